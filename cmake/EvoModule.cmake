@@ -1,0 +1,32 @@
+# Flags that every target of the project shares.
+add_library(evo_flags INTERFACE)
+# No fused multiply-add behind our back: the same source gives the same bytes on every x86-64 and at every -march.
+target_compile_options(evo_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
+                                           -Werror -ffp-contract=off)
+if(EVO_NATIVE)
+  target_compile_options(evo_flags INTERFACE -march=native)
+endif()
+if(EVO_SANITIZE)
+  target_compile_options(evo_flags INTERFACE -fsanitize=${EVO_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(evo_flags INTERFACE -fsanitize=${EVO_SANITIZE})
+endif()
+
+# evo_module(<name> SOURCES <file>... DEPENDS <module or library>...)
+# One static library a module; it may depend only on modules listed above it in CMakeLists.txt.
+function(evo_module name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_library(evo_${name} STATIC ${ARG_SOURCES})
+  add_library(evo::${name} ALIAS evo_${name})
+  target_include_directories(evo_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include PRIVATE ${PROJECT_SOURCE_DIR}/src)
+  target_link_libraries(evo_${name} PUBLIC ${ARG_DEPENDS} PRIVATE evo_flags)
+endfunction()
+
+# evo_test(<module> SOURCES <file>... [DEPENDS <library>...])
+function(evo_test name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_executable(${name}_test ${ARG_SOURCES})
+  target_include_directories(${name}_test PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_link_libraries(${name}_test PRIVATE evo::${name} ${ARG_DEPENDS} GTest::gtest_main evo_flags)
+  target_compile_definitions(${name}_test PRIVATE EVO_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  gtest_discover_tests(${name}_test TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)
+endfunction()

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace evo {
+
+/// A fixed team of threads. Work is cut by index, every index writes only its own results, so the outcome does not
+/// depend on how many threads there are or in which order they run.
+class ThreadPool {
+ public:
+  /// `threads` >= 1 counts the calling thread; 0 means one for each processor.
+  explicit ThreadPool(int threads);
+  ~ThreadPool();
+  ThreadPool(const ThreadPool&) = delete;
+  ThreadPool& operator=(const ThreadPool&) = delete;
+
+  int size() const { return static_cast<int>(workers_.size()) + 1; }
+
+  /// Calls `work(i)` for every i in [0, count) and returns when all are done. `chunk` indices are handed out at a time.
+  /// The first exception thrown (by lowest index) is rethrown here.
+  void ForEach(std::size_t count, const std::function<void(std::size_t)>& work, std::size_t chunk = 1);
+
+ private:
+  struct Job;
+  void RunWorker();
+  static void Drain(Job& job);
+
+  std::vector<std::thread> workers_;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  std::condition_variable finished_;
+  Job* job_ = nullptr;
+  std::size_t generation_ = 0;
+  bool stop_ = false;
+};
+
+}  // namespace evo

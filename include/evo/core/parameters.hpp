@@ -1,0 +1,55 @@
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace evo {
+
+/// The parameters of the stages, by dotted name ("tracker.features"), read from YAML and from key=value settings.
+/// Each stage's options stay a plain struct with defaults; a parameter refers to one field of such a struct, which must
+/// outlive this object. A name that does not exist is an Error (kConfiguration) that names the line and the nearest
+/// one.
+class Parameters {
+ public:
+  /// Bounds are inclusive; NaN never passes.
+  void Add(std::string name, double* value, double lowest, double highest, std::string help);
+  void Add(std::string name, int* value, int lowest, int highest, std::string help);
+  void Add(std::string name, bool* value, std::string help);
+  void Add(std::string name, std::string* value, std::vector<std::string> choices, std::string help);
+
+  void LoadFile(const std::filesystem::path& path);
+  /// `source` names the text in messages.
+  void LoadText(const std::string& yaml, const std::string& source);
+  /// One setting "name=value", as given by --set.
+  void Set(std::string_view setting);
+
+  /// All parameters with their present values as a YAML file that LoadFile reads back, with help and ranges as
+  /// comments.
+  std::string ToYaml() const;
+  /// Names and present values, in order of registration.
+  std::vector<std::pair<std::string, std::string>> Values() const;
+
+ private:
+  struct Entry {
+    std::string name;
+    std::variant<double*, int*, bool*, std::string*> value;
+    double lowest = -std::numeric_limits<double>::infinity();
+    double highest = std::numeric_limits<double>::infinity();
+    std::vector<std::string> choices;
+    std::string help;
+  };
+
+  Entry* Find(std::string_view name);
+  std::string Nearest(std::string_view name) const;
+  /// `where` names the place in messages, for example "run.yaml:3".
+  void Assign(const std::string& name, const std::string& text, const std::string& where);
+  static std::string Format(const Entry& entry);
+
+  std::vector<Entry> entries_;
+};
+
+}  // namespace evo

@@ -1,0 +1,193 @@
+#include "evo/core/parameters.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <numeric>
+#include <sstream>
+#include <utility>
+
+#include "evo/core/error.hpp"
+
+namespace evo {
+
+namespace {
+
+Error ConfigurationError(const std::string& where, const std::string& what) {
+  return {ErrorKind::kConfiguration, where + ": " + what};
+}
+
+template <typename Number>
+bool ParseNumber(const std::string& text, Number* value) {
+  const char* const end = text.data() + text.size();
+  const auto [last, failure] = std::from_chars(text.data(), end, *value);
+  return failure == std::errc() && last == end;
+}
+
+/// The shortest text that reads back as the same double.
+std::string FormatNumber(double value) {
+  char buffer[32];
+  const auto [end, failure] = std::to_chars(buffer, buffer + sizeof buffer, value);
+  return failure == std::errc() ? std::string(buffer, end) : "nan";
+}
+
+std::size_t EditDistance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t substituted = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = std::exchange(row[j + 1], std::min({row[j + 1] + 1, row[j] + 1, substituted}));
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+void Parameters::Add(std::string name, double* value, double lowest, double highest, std::string help) {
+  entries_.push_back({std::move(name), value, lowest, highest, {}, std::move(help)});
+}
+
+void Parameters::Add(std::string name, int* value, int lowest, int highest, std::string help) {
+  entries_.push_back(
+      {std::move(name), value, static_cast<double>(lowest), static_cast<double>(highest), {}, std::move(help)});
+}
+
+void Parameters::Add(std::string name, bool* value, std::string help) {
+  entries_.push_back({std::move(name), value, 0, 1, {}, std::move(help)});
+}
+
+void Parameters::Add(std::string name, std::string* value, std::vector<std::string> choices, std::string help) {
+  entries_.push_back({std::move(name), value, 0, 0, std::move(choices), std::move(help)});
+}
+
+void Parameters::LoadFile(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (!file || std::filesystem::is_directory(path)) {
+    throw ConfigurationError(path.string(), "cannot read this configuration file; give a YAML file to --config");
+  }
+  LoadText(text, path.string());
+}
+
+void Parameters::LoadText(const std::string& yaml, const std::string& source) {
+  const auto place = [&](const YAML::Mark& mark) { return source + ":" + std::to_string(mark.line + 1); };
+  YAML::Node root;
+  try {
+    root = YAML::Load(yaml);
+  } catch (const YAML::ParserException& failure) {
+    throw ConfigurationError(place(failure.mark), "not valid YAML: " + failure.msg);
+  }
+  if (root.IsNull()) return;
+  const std::function<void(const YAML::Node&, const std::string&)> visit = [&](const YAML::Node& node,
+                                                                               const std::string& prefix) {
+    if (!node.IsMap()) throw ConfigurationError(place(node.Mark()), "expected 'name: value' pairs");
+    for (const auto& item : node) {
+      const std::string name = prefix + item.first.Scalar();
+      if (item.second.IsScalar()) {
+        Assign(name, item.second.Scalar(), place(item.first.Mark()));
+      } else if (item.second.IsMap()) {
+        visit(item.second, name + ".");
+      } else {
+        throw ConfigurationError(place(item.first.Mark()), "'" + name + "' needs a single value");
+      }
+    }
+  };
+  visit(root, "");
+}
+
+void Parameters::Set(std::string_view setting) {
+  const auto equals = setting.find('=');
+  const std::string where = "--set " + std::string(setting);
+  if (equals == std::string_view::npos || equals == 0) throw ConfigurationError(where, "expected name=value");
+  Assign(std::string(setting.substr(0, equals)), std::string(setting.substr(equals + 1)), where);
+}
+
+Parameters::Entry* Parameters::Find(std::string_view name) {
+  const auto found = std::ranges::find(entries_, name, &Entry::name);
+  return found == entries_.end() ? nullptr : &*found;
+}
+
+std::string Parameters::Nearest(std::string_view name) const {
+  const auto nearest =
+      std::ranges::min_element(entries_, {}, [&](const Entry& e) { return EditDistance(e.name, name); });
+  return nearest == entries_.end() ? "" : nearest->name;
+}
+
+void Parameters::Assign(const std::string& name, const std::string& text, const std::string& where) {
+  Entry* const entry = Find(name);
+  if (!entry) {
+    throw ConfigurationError(where, "unknown parameter '" + name + "'; did you mean '" + Nearest(name) + "'?");
+  }
+  const auto range = [&] { return "[" + FormatNumber(entry->lowest) + ", " + FormatNumber(entry->highest) + "]"; };
+  const auto refuse = [&](const std::string& expected) {
+    return ConfigurationError(where, "'" + name + "' is '" + text + "' but must be " + expected);
+  };
+  if (auto* const* number = std::get_if<double*>(&entry->value)) {
+    double value = 0.0;
+    if (!ParseNumber(text, &value) || !(value >= entry->lowest && value <= entry->highest)) {
+      throw refuse("a number in " + range());
+    }
+    **number = value;
+  } else if (auto* const* integer = std::get_if<int*>(&entry->value)) {
+    int value = 0;
+    if (!ParseNumber(text, &value) || value < entry->lowest || value > entry->highest) {
+      throw refuse("a whole number in " + range());
+    }
+    **integer = value;
+  } else if (auto* const* flag = std::get_if<bool*>(&entry->value)) {
+    if (text != "true" && text != "false") throw refuse("true or false");
+    **flag = text == "true";
+  } else {
+    if (std::ranges::find(entry->choices, text) == entry->choices.end()) {
+      std::string choices;
+      for (const auto& choice : entry->choices) choices += (choices.empty() ? "" : ", ") + choice;
+      throw refuse("one of: " + choices);
+    }
+    *std::get<std::string*>(entry->value) = text;
+  }
+}
+
+std::string Parameters::Format(const Entry& entry) {
+  if (auto* const* number = std::get_if<double*>(&entry.value)) return FormatNumber(**number);
+  if (auto* const* integer = std::get_if<int*>(&entry.value)) return std::to_string(**integer);
+  if (auto* const* flag = std::get_if<bool*>(&entry.value)) return **flag ? "true" : "false";
+  return *std::get<std::string*>(entry.value);
+}
+
+std::string Parameters::ToYaml() const {
+  std::ostringstream yaml;
+  std::string section;
+  for (const auto& entry : entries_) {
+    const auto dot = entry.name.rfind('.');
+    const std::string group = dot == std::string::npos ? "" : entry.name.substr(0, dot);
+    if (group != section) {
+      if (!section.empty()) yaml << '\n';
+      yaml << group << ":\n";
+      section = group;
+    }
+    yaml << (group.empty() ? "" : "  ") << entry.name.substr(group.empty() ? 0 : dot + 1) << ": " << Format(entry)
+         << "  # " << entry.help;
+    if (std::holds_alternative<double*>(entry.value) || std::holds_alternative<int*>(entry.value)) {
+      yaml << "; " << FormatNumber(entry.lowest) << " to " << FormatNumber(entry.highest);
+    }
+    for (std::size_t i = 0; i < entry.choices.size(); ++i) yaml << (i ? ", " : "; ") << entry.choices[i];
+    yaml << '\n';
+  }
+  return yaml.str();
+}
+
+std::vector<std::pair<std::string, std::string>> Parameters::Values() const {
+  std::vector<std::pair<std::string, std::string>> values;
+  for (const auto& entry : entries_) values.emplace_back(entry.name, Format(entry));
+  return values;
+}
+
+}  // namespace evo

@@ -1,0 +1,101 @@
+#include "evo/geometry/camera.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+
+namespace evo {
+
+namespace {
+
+constexpr int kNewtonIterations = 30;
+constexpr double kTolerance = 1e-12;  // on the plane z = 1
+constexpr double kLargestResidual = 1e-7;
+
+using Eigen::Matrix2d;
+using Eigen::Vector2d;
+
+/// Brown-Conrady, with its Jacobian where asked for.
+Vector2d RadTan(const std::array<double, 5>& k, const Vector2d& p, Matrix2d* jacobian) {
+  const double x = p.x();
+  const double y = p.y();
+  const double r2 = p.squaredNorm();
+  const double radial = 1.0 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]));
+  if (jacobian) {
+    const double slope = 2.0 * (k[0] + r2 * (2.0 * k[1] + r2 * 3.0 * k[4]));  // d radial / d x = slope * x
+    (*jacobian)(0, 0) = radial + slope * x * x + 2.0 * k[2] * y + 6.0 * k[3] * x;
+    (*jacobian)(0, 1) = slope * x * y + 2.0 * k[2] * x + 2.0 * k[3] * y;
+    (*jacobian)(1, 0) = slope * x * y + 2.0 * k[2] * x + 2.0 * k[3] * y;
+    (*jacobian)(1, 1) = radial + slope * y * y + 6.0 * k[2] * y + 2.0 * k[3] * x;
+  }
+  return {x * radial + 2.0 * k[2] * x * y + k[3] * (r2 + 2.0 * x * x),
+          y * radial + k[2] * (r2 + 2.0 * y * y) + 2.0 * k[3] * x * y};
+}
+
+double EquidistantRadius(const std::array<double, 5>& k, double theta) {
+  const double t2 = theta * theta;
+  return theta * (1.0 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3]))));
+}
+
+double EquidistantSlope(const std::array<double, 5>& k, double theta) {
+  const double t2 = theta * theta;
+  return 1.0 + t2 * (3.0 * k[0] + t2 * (5.0 * k[1] + t2 * (7.0 * k[2] + t2 * 9.0 * k[3])));
+}
+
+std::optional<Vector2d> UndistortRadTan(const std::array<double, 5>& k, const Vector2d& distorted) {
+  Vector2d p = distorted;
+  for (int i = 0; i < kNewtonIterations; ++i) {
+    Matrix2d jacobian;
+    const Vector2d residual = RadTan(k, p, &jacobian) - distorted;
+    // A fold of the lens model: beyond it the inverse is another branch, not the ray that was seen.
+    if (!(jacobian.determinant() > 0.0 && jacobian.trace() > 0.0)) return std::nullopt;
+    const Vector2d step = jacobian.inverse() * residual;
+    p -= step;
+    if (step.squaredNorm() < kTolerance * kTolerance) break;
+  }
+  if (!((RadTan(k, p, nullptr) - distorted).norm() < kLargestResidual)) return std::nullopt;
+  return p;
+}
+
+std::optional<Vector2d> UndistortEquidistant(const std::array<double, 5>& k, const Vector2d& distorted) {
+  const double radius = distorted.norm();
+  if (radius < 1e-12) return distorted;
+  double theta = radius;
+  for (int i = 0; i < kNewtonIterations; ++i) {
+    const double slope = EquidistantSlope(k, theta);
+    if (!(slope > 0.0)) return std::nullopt;
+    const double step = (EquidistantRadius(k, theta) - radius) / slope;
+    theta -= step;
+    if (std::abs(step) < kTolerance) break;
+  }
+  if (!(std::abs(EquidistantRadius(k, theta) - radius) < kLargestResidual)) return std::nullopt;
+  if (!(theta > 0.0 && theta < 0.5 * M_PI - 1e-3)) return std::nullopt;  // not in front of the camera
+  return distorted * (std::tan(theta) / radius);
+}
+
+}  // namespace
+
+Vector2d Camera::Distort(const Vector2d& normalized) const {
+  const auto& c = calibration_;
+  Vector2d distorted;
+  if (c.distortion == Distortion::kRadTan) {
+    distorted = RadTan(c.coefficients, normalized, nullptr);
+  } else {
+    const double r = normalized.norm();
+    distorted = r < 1e-12 ? normalized : Vector2d(normalized * (EquidistantRadius(c.coefficients, std::atan(r)) / r));
+  }
+  return {c.fx * distorted.x() + c.cx, c.fy * distorted.y() + c.cy};
+}
+
+std::optional<Vector2d> Camera::Undistort(const Vector2d& pixel) const {
+  const auto& c = calibration_;
+  const Vector2d distorted((pixel.x() - c.cx) / c.fx, (pixel.y() - c.cy) / c.fy);
+  return c.distortion == Distortion::kRadTan ? UndistortRadTan(c.coefficients, distorted)
+                                             : UndistortEquidistant(c.coefficients, distorted);
+}
+
+bool Camera::Contains(const Vector2d& pixel, double margin) const {
+  return pixel.x() >= margin && pixel.y() >= margin && pixel.x() <= width() - 1 - margin &&
+         pixel.y() <= height() - 1 - margin;
+}
+
+}  // namespace evo

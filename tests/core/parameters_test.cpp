@@ -1,0 +1,86 @@
+#include "evo/core/parameters.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "evo/core/error.hpp"
+
+namespace evo {
+namespace {
+
+class ParametersTest : public ::testing::Test {
+ protected:
+  ParametersTest() {
+    parameters.Add("tracker.sigma_px", &sigma, 0.1, 10.0, "smoothing (px)");
+    parameters.Add("tracker.features", &features, 8, 1000, "features");
+    parameters.Add("odometry.refine", &refine, "refine");
+    parameters.Add("odometry.weight", &weight, {"tukey", "huber"}, "robust weight");
+  }
+
+  std::string Refusal(const std::string& yaml) {
+    try {
+      parameters.LoadText(yaml, "run.yaml");
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::kConfiguration);
+      return error.what();
+    }
+    ADD_FAILURE() << "accepted: " << yaml;
+    return "";
+  }
+
+  Parameters parameters;
+  double sigma = 2.0;
+  int features = 100;
+  bool refine = true;
+  std::string weight = "tukey";
+};
+
+TEST_F(ParametersTest, ReadsWhatItPrints) {
+  parameters.LoadText("tracker: {sigma_px: 0.3, features: 300}\nodometry:\n  refine: false\n  weight: huber\n", "a");
+  EXPECT_DOUBLE_EQ(sigma, 0.3);
+  const std::string printed = parameters.ToYaml();
+  sigma = 1.0, features = 9, refine = true, weight = "tukey";
+  parameters.LoadText(printed, "printed");
+  EXPECT_DOUBLE_EQ(sigma, 0.3);
+  EXPECT_EQ(features, 300);
+  EXPECT_FALSE(refine);
+  EXPECT_EQ(weight, "huber");
+}
+
+TEST_F(ParametersTest, NamesTheLineAndTheNearestKey) {
+  const std::string message = Refusal("tracker:\n  features: 100\n  sigma_xp: 2\n");
+  EXPECT_NE(message.find("run.yaml:3"), std::string::npos) << message;
+  EXPECT_NE(message.find("tracker.sigma_px"), std::string::npos) << message;
+}
+
+TEST_F(ParametersTest, RefusesValuesOutOfRangeOrOfTheWrongType) {
+  for (const char* value : {"sigma_px: 0", "sigma_px: nan", "sigma_px: wide", "features: 2.5", "features: 1e9",
+                            "features: [1, 2]", "features: "}) {
+    Refusal("tracker:\n  " + std::string(value) + "\n");
+  }
+  Refusal("odometry: {refine: maybe}");
+  Refusal("odometry: {weight: cauchy}");
+  Refusal("odometry: {refine: [");
+  Refusal("just a sentence");
+  EXPECT_DOUBLE_EQ(sigma, 2.0);
+  EXPECT_EQ(features, 100);
+}
+
+TEST_F(ParametersTest, SettingsWin) {
+  parameters.LoadText("tracker: {features: 50}", "a");
+  parameters.Set("tracker.features=60");
+  EXPECT_EQ(features, 60);
+  EXPECT_THROW(parameters.Set("tracker.features"), Error);
+  EXPECT_THROW(parameters.Set("tracker.feature=3"), Error);
+  EXPECT_THROW(parameters.LoadFile("/nonexistent.yaml"), Error);
+}
+
+TEST_F(ParametersTest, EmptyFileChangesNothing) {
+  parameters.LoadText("", "empty");
+  parameters.LoadText("# nothing\n", "comment");
+  EXPECT_EQ(features, 100);
+}
+
+}  // namespace
+}  // namespace evo
