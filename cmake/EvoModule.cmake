@@ -2,7 +2,7 @@
 add_library(evo_flags INTERFACE)
 # No fused multiply-add behind our back: the same source gives the same bytes on every x86-64 and at every -march.
 target_compile_options(evo_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
-                                           -Werror -ffp-contract=off)
+                                           -Werror -ffp-contract=off -fno-math-errno)
 if(EVO_NATIVE)
   target_compile_options(evo_flags INTERFACE -march=native)
 endif()

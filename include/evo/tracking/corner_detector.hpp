@@ -1,0 +1,24 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "evo/events/event_history.hpp"
+#include "evo/tracking/flow_field.hpp"
+#include "evo/tracking/tracker_options.hpp"
+
+namespace evo {
+
+/// Image of the events around `t`, each moved along the flow to where its edge was at `t` (the paper's corrected event
+/// frame, figure 2c): CV_32F, events per pixel, sharp where the raw image is smeared. The window is as long as the flow
+/// needs to move `motion_px`, pixel by pixel.
+cv::Mat CorrectedEventImage(const EventHistory& history, TimeNs t, const FlowField& flow, double motion_px,
+                            const TrackerOptions& options);
+
+/// Harris corners of a corrected event image, strongest first, spread over the image: at most `count`, none nearer than
+/// the options' spacing to another or to a point of `taken`.
+std::vector<Eigen::Vector2d> DetectCorners(const cv::Mat& image, const std::vector<Eigen::Vector2d>& taken, int count,
+                                           const TrackerOptions& options);
+
+}  // namespace evo

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+namespace evo {
+
+/// How many events fell where around a feature: a square histogram of 1 px cells centred on (0, 0), one plane for each
+/// polarity (or one for both).
+class DensityMap {
+ public:
+  DensityMap(int radius_px, int planes);
+
+  int radius() const { return radius_; }
+  int side() const { return 2 * radius_ + 1; }
+  int planes() const { return planes_; }
+  int PlaneOf(std::int8_t polarity) const { return planes_ == 2 && polarity < 0 ? 1 : 0; }
+  const float* plane(int p) const { return cells_.data() + p * side() * side(); }
+  double Total() const;
+
+  void Clear();
+  void Scale(float factor);
+  /// Adds `factor` times another map of the same size.
+  void Add(const DensityMap& other, float factor);
+  /// Adds an event bilinearly to the four cells around it; nothing happens outside the map.
+  void Vote(float x, float y, int plane, float weight) {
+    const float column = x + static_cast<float>(radius_);
+    const float row = y + static_cast<float>(radius_);
+    const int c = static_cast<int>(column);
+    const int r = static_cast<int>(row);
+    if (!(column >= 0.0f && row >= 0.0f) || c >= side() - 1 || r >= side() - 1) return;
+    const float fx = column - static_cast<float>(c);
+    const float fy = row - static_cast<float>(r);
+    float* cell = cells_.data() + (plane * side() + r) * side() + c;
+    cell[0] += weight * (1.0f - fx) * (1.0f - fy);
+    cell[1] += weight * fx * (1.0f - fy);
+    cell[side()] += weight * (1.0f - fx) * fy;
+    cell[side() + 1] += weight * fx * fy;
+  }
+  /// The same events seen in other coordinates: a cell at u moves to `linear` * u.
+  DensityMap Warped(const Eigen::Matrix2d& linear) const;
+
+ private:
+  int radius_;
+  int planes_;
+  std::vector<float> cells_;
+};
+
+/// The E step of expectation maximisation with Gaussian soft association, tabulated. For an event at u and template
+/// events p_j with density D(u) = sum_j N(u; p_j, sigma^2), the expected partner lies at u + sigma^2 grad D / D (the
+/// mean shift) and the event is one of the template's, not a stray one, with probability D / (D + D0). Looking both up
+/// costs some nanoseconds; summing over all pairs costs microseconds (Zhu et al., equations 6 to 9, do the latter).
+class AssociationField {
+ public:
+  /// What an event at some place is pulled by: its probability of not being stray; that times the way to the expected
+  /// partner in x and in y (px); nothing.
+  using Pull = Eigen::Array4f;
+
+  /// `outlier_share`: D0 as a share of the map's mean density.
+  void Build(const DensityMap& map, double sigma_px, double outlier_share);
+
+  Pull At(float x, float y, int plane) const {
+    const float column = x + static_cast<float>(radius_);
+    const float row = y + static_cast<float>(radius_);
+    const int c = static_cast<int>(column);
+    const int r = static_cast<int>(row);
+    if (!(column >= 0.0f && row >= 0.0f) || c >= side_ - 1 || r >= side_ - 1) return Pull::Zero();
+    const float fx = column - static_cast<float>(c);
+    const float fy = row - static_cast<float>(r);
+    const Pull* cell = table_.data() + (plane * side_ + r) * side_ + c;
+    const Pull above = cell[0] + fx * (cell[1] - cell[0]);
+    const Pull below = cell[side_] + fx * (cell[side_ + 1] - cell[side_]);
+    return above + fy * (below - above);
+  }
+
+  /// The sums of pull x (1, u, v) that the map's own events feel, per unit of their weight: row 0 for the pull along x,
+  /// row 1 along y. They are not zero (the density is blurred), and are what a perfectly aligned window would feel too.
+  const Eigen::Matrix<double, 2, 3>& own_moments() const { return own_moments_; }
+  /// Mean weight of the map's own events.
+  double own_weight() const { return own_weight_; }
+
+ private:
+  void Smooth(const float* plane, double sigma_px);
+
+  int radius_ = 0;
+  int side_ = 0;
+  std::vector<Pull> table_;  // per plane and cell
+  std::vector<float> kernel_, rows_, smooth_;
+  Eigen::ArrayXf weight_, x_, y_, scale_;  // of one row of cells
+  Eigen::Matrix<double, 2, 3> own_moments_ = Eigen::Matrix<double, 2, 3>::Zero();
+  double own_weight_ = 0.0;
+};
+
+}  // namespace evo

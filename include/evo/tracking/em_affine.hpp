@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "evo/events/event_history.hpp"
+#include "evo/tracking/density_map.hpp"
+
+namespace evo {
+
+/// Where and how a template lies in the sensor around a reference instant: the template's point u appears at
+/// x = offset + flow * dt + linear * u, relative to the centre for which the events were gathered.
+struct PatchMotion {
+  Eigen::Vector2d offset = Eigen::Vector2d::Zero();  ///< px
+  Eigen::Vector2d flow = Eigen::Vector2d::Zero();    ///< px/s
+  Eigen::Matrix2d linear = Eigen::Matrix2d::Identity();
+};
+
+struct AlignmentOptions {
+  int iterations = 20;
+  double patch_radius_px = 15.0;
+  double half_window_s = 0.01;
+  double flow_prior = 20.0;    ///< weight of the initial flow, in events
+  double affine_prior = 50.0;  ///< weight of the initial linear part, in events
+};
+
+struct AlignmentQuality {
+  double inlier_share = 0.0;  ///< mean probability that an event belongs to the template
+  double residual_px = 0.0;   ///< root mean square pull left on the events after the fit
+  double last_step_px = 0.0;  ///< of the last iteration
+};
+
+/// Expectation maximisation of a patch's motion against its template (Zhu et al., EM 2, a soft iterative closest
+/// point): E step: look the expected partner of every event up in `field`; M step: the correction
+/// u + b + g dt + M u that best takes the events to their partners, by weighted least squares, in closed form.
+/// Only the offset and the flow move if `with_linear` is false.
+AlignmentQuality AlignToTemplate(const LocalEvents& events, const AssociationField& field, int planes,
+                                 const AlignmentOptions& options, bool with_linear, PatchMotion* motion);
+
+}  // namespace evo

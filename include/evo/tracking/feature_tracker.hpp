@@ -1,0 +1,63 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "evo/core/parallel.hpp"
+#include "evo/events/event_history.hpp"
+#include "evo/io/tracks.hpp"
+#include "evo/tracking/density_map.hpp"
+#include "evo/tracking/em_affine.hpp"
+#include "evo/tracking/flow_field.hpp"
+#include "evo/tracking/tracker_options.hpp"
+
+namespace evo {
+
+/// A live feature: a template of events and where it is now.
+struct TrackedFeature {
+  std::int64_t id = 0;
+  Eigen::Vector2d position;                              ///< px, at the stamp of the last event frame
+  Eigen::Vector2d flow;                                  ///< px/s
+  Eigen::Matrix2d linear = Eigen::Matrix2d::Identity();  ///< template to sensor
+  double scale = 1.0;                                    ///< of the patch against its first window
+  DensityMap events;                                     ///< the template
+  int frames = 1;                                        ///< lifetime so far
+};
+
+/// Tracks features from event frame to event frame. An event frame is an instant with a window of events around it; the
+/// positions reported are those at that very instant, whatever the window of each feature.
+class FeatureTracker {
+ public:
+  FeatureTracker(int width, int height, const TrackerOptions& options, ThreadPool* pool);
+
+  /// Takes all features to the frame at `t`; `history` must hold the longest window around it.
+  void Process(const EventHistory& history, TimeNs t);
+
+  const std::vector<TrackedFeature>& features() const { return features_; }
+  const FlowField& flow_field() const { return flow_field_; }
+  /// Whether the last frame was a key frame, where new features were detected.
+  bool detected() const { return detected_; }
+
+ private:
+  /// False if the feature is lost.
+  bool Track(const EventHistory& history, TimeNs t, TrackedFeature* feature) const;
+  bool Align(const EventHistory& history, TimeNs t, TrackedFeature* feature) const;
+  void Refill(const EventHistory& history, TimeNs t);
+  std::optional<TrackedFeature> Birth(const EventHistory& history, TimeNs t, const Eigen::Vector2d& position) const;
+  void UpdateTemplate(const LocalEvents& events, const PatchMotion& motion, TrackedFeature* feature) const;
+  int planes() const { return options_.use_polarity ? 2 : 1; }
+
+  TrackerOptions options_;
+  int width_;
+  int height_;
+  ThreadPool* pool_;
+  FlowField flow_field_;
+  std::vector<TrackedFeature> features_;
+  std::int64_t next_id_ = 0;
+  std::optional<TimeNs> last_;
+  bool detected_ = false;
+};
+
+}  // namespace evo

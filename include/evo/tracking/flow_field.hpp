@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "evo/core/parallel.hpp"
+#include "evo/events/event_history.hpp"
+#include "evo/tracking/tracker_options.hpp"
+
+namespace evo {
+
+/// Position and optical flow of a tracked feature, from which a flow field starts.
+struct FlowSample {
+  Eigen::Vector2d position;  ///< px
+  Eigen::Vector2d flow;      ///< px/s
+};
+
+/// Optical flow over the whole sensor on a coarse grid, by EM on the events of each cell. It corrects the events of the
+/// image on which corners are detected and gives new features their first flow.
+class FlowField {
+ public:
+  FlowField(int width, int height, const TrackerOptions& options);
+
+  /// Takes each cell's flow from the features around it, else estimates it, started from its own last value.
+  void Update(const EventHistory& history, TimeNs t, const std::vector<FlowSample>& features, ThreadPool* pool);
+
+  /// Bilinear, px/s; zero where nothing moves.
+  Eigen::Vector2d At(double x, double y) const;
+
+ private:
+  struct Cell {
+    Eigen::Vector2d flow = Eigen::Vector2d::Zero();
+    bool known = false;
+  };
+
+  Cell Estimate(const EventHistory& history, TimeNs t, const Eigen::Vector2d& centre, const Cell& start) const;
+  Cell FromFeatures(std::size_t index, const std::vector<FlowSample>& features) const;
+  Eigen::Vector2d CentreOf(std::size_t index) const;
+  void FillUnknown();
+
+  TrackerOptions options_;
+  int columns_;
+  int rows_;
+  std::vector<Cell> cells_;
+};
+
+/// Half the window in which `flow` moves a feature by `motion_px`, within the options' limits.
+TimeNs HalfWindow(const Eigen::Vector2d& flow, double motion_px, const TrackerOptions& options);
+
+/// Flow of the events around (x, y) at `t`, when nothing is known before: windows of growing length, each started from
+/// the flow of the one before. Returns false where there are too few events for a flow.
+bool EstimateFlow(const EventHistory& history, TimeNs t, double x, double y, const TrackerOptions& options,
+                  Eigen::Vector2d* flow);
+
+}  // namespace evo

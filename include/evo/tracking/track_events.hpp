@@ -1,0 +1,35 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "evo/core/parallel.hpp"
+#include "evo/io/event_reader.hpp"
+#include "evo/io/tracks.hpp"
+#include "evo/tracking/feature_tracker.hpp"
+#include "evo/tracking/tracker_options.hpp"
+
+namespace evo {
+
+struct TrackingResult {
+  Tracks tracks;               ///< of features seen in two event frames at least
+  std::vector<TimeNs> frames;  ///< stamps of all event frames
+  std::size_t events = 0;
+  std::size_t key_frames = 0;  ///< frames where features were detected
+};
+
+/// What an observer of the tracker sees after each event frame, to draw it.
+struct TrackingView {
+  const EventHistory& history;
+  const FeatureTracker& tracker;
+  TimeNs t;
+};
+
+/// Tracks features through a whole stream of events: event frames every `frame_interval_s` from the first event of the
+/// stream, each as soon as the stream holds its longest window. Memory does not grow with the length of the stream but
+/// for the tracks. Throws Error (kNothingToDo) if the stream is shorter than one window.
+TrackingResult TrackEvents(EventReader* reader, int width, int height, const TrackerOptions& options, ThreadPool* pool,
+                           const std::function<void(double)>& progress,
+                           const std::function<void(const TrackingView&)>& observe = {});
+
+}  // namespace evo

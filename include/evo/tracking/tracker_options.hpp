@@ -1,0 +1,48 @@
+#pragma once
+
+#include "evo/core/parameters.hpp"
+
+namespace evo {
+
+/// Parameters of the feature tracker (Zhu, Atanasov, Daniilidis: Event-based feature tracking with probabilistic data
+/// association, ICRA 2017). One set serves all data sets.
+struct TrackerOptions {
+  double frame_interval_s = 0.02;  ///< time between two event frames
+  int features = 150;              ///< live features to aim at
+  double refill_below = 0.9;       ///< detect new ones when fewer than this share is alive: a key frame
+  int patch_radius_px = 15;        ///< half the side of a feature's patch: 31 x 31 px
+
+  // The window of events around an event frame's stamp, chosen per feature.
+  double window_motion_px = 4.0;  ///< the flow moves the feature this far within its window
+  double shortest_window_s = 0.004;
+  double longest_window_s = 0.08;
+  int fewest_events = 50;  ///< in a patch's window, for a new feature and for an update
+  int most_events = 400;   ///< in a patch's window: of more, an even sample is taken
+
+  // Expectation maximisation.
+  double flow_sigma_px = 1.5;    ///< soft association of events among themselves (EM 1)
+  double coarse_sigma_px = 2.5;  ///< soft association to the template (EM 2), first pass
+  double fine_sigma_px = 1.0;    ///< soft association to the template (EM 2), final pass
+  double outlier_share = 0.2;    ///< density of stray events over the patch's mean density of events
+  int iterations = 20;           ///< at most, each EM
+  double flow_prior = 20.0;      ///< weight, in events, of the predicted flow
+  double affine_prior = 50.0;    ///< weight, in events, of the previous affine shape
+  double template_gain = 0.1;    ///< share of the newest window in a template that has settled
+  bool use_polarity = true;      ///< associate events only with template events of their own sign
+
+  // When a feature is lost.
+  double fewest_inliers = 0.3;       ///< share of events that the template explains
+  double largest_residual_px = 2.0;  ///< root mean square pull that is left on the events
+  double largest_jump_px = 6.0;      ///< from where its flow predicted it
+  double largest_scale = 5.0;        ///< of the patch against its template, and its inverse
+  double border_px = 6.0;            ///< a feature closer than this to the edge of the sensor is given up
+
+  // Corners.
+  double corner_spacing_px = 10.0;  ///< smallest distance between two features when one is born
+  double corner_share = 0.02;       ///< weakest corner accepted, as a share of a strong one (95th percentile)
+  double corner_window_motion_px = 3.0;
+};
+
+void Register(Parameters& parameters, TrackerOptions& options);
+
+}  // namespace evo

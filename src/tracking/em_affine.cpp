@@ -1,0 +1,98 @@
+#include "evo/tracking/em_affine.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <cmath>
+
+namespace evo {
+
+namespace {
+
+constexpr double kSmallestStep = 0.01;  // px
+
+using Design = Eigen::Matrix4d;                  // over (1, dt / half window, u / radius, v / radius)
+using Correction = Eigen::Matrix<double, 4, 2>;  // the same rows, for x and y
+
+struct Moments {
+  Design normal = Design::Zero();
+  Correction pull = Correction::Zero();
+  double weight = 0.0;
+  double squares = 0.0;
+};
+
+Moments Expect(const LocalEvents& events, const AssociationField& field, int planes, const AlignmentOptions& options,
+               const PatchMotion& motion) {
+  const Eigen::Matrix2f inverse = motion.linear.inverse().cast<float>();
+  const Eigen::Vector2f offset = motion.offset.cast<float>();
+  const Eigen::Vector2f flow = motion.flow.cast<float>();
+  const auto per_window = static_cast<float>(1.0 / options.half_window_s);
+  const auto per_radius = static_cast<float>(1.0 / options.patch_radius_px);
+  using Row = Eigen::Array4f;
+  Row n0 = Row::Zero(), n1 = Row::Zero(), n2 = Row::Zero(), n3 = Row::Zero(), x = Row::Zero(), y = Row::Zero();
+  float squares = 0.0f;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const float rx = events.x[i] - offset.x() - flow.x() * events.dt[i];
+    const float ry = events.y[i] - offset.y() - flow.y() * events.dt[i];
+    const float u = inverse(0, 0) * rx + inverse(0, 1) * ry;
+    const float v = inverse(1, 0) * rx + inverse(1, 1) * ry;
+    const AssociationField::Pull pull = field.At(u, v, planes == 2 && events.polarity[i] < 0 ? 1 : 0);
+    if (!(pull[0] > 0.0f)) continue;
+    const Row regressors(1.0f, per_window * events.dt[i], per_radius * u, per_radius * v);
+    const Row weighted = pull[0] * regressors;
+    n0 += weighted;
+    n1 += regressors[1] * weighted;
+    n2 += regressors[2] * weighted;
+    n3 += regressors[3] * weighted;
+    x += pull[1] * regressors;
+    y += pull[2] * regressors;
+    squares += (pull[1] * pull[1] + pull[2] * pull[2]) / pull[0];
+  }
+  Moments moments;
+  moments.normal << n0.matrix().cast<double>(), n1.matrix().cast<double>(), n2.matrix().cast<double>(),
+      n3.matrix().cast<double>();
+  moments.pull << x.matrix().cast<double>(), y.matrix().cast<double>();
+  moments.weight = n0[0];
+  moments.squares = squares;
+  return moments;
+}
+
+}  // namespace
+
+AlignmentQuality AlignToTemplate(const LocalEvents& events, const AssociationField& field, int planes,
+                                 const AlignmentOptions& options, bool with_linear, PatchMotion* motion) {
+  const int free = with_linear ? 4 : 2;
+  const Eigen::Vector4d prior(0.0, options.flow_prior, options.affine_prior, options.affine_prior);
+  Correction moved = Correction::Zero();  // so far, which the priors pull back
+  AlignmentQuality quality;
+  for (int iteration = 0; iteration < options.iterations; ++iteration) {
+    Moments moments = Expect(events, field, planes, options, *motion);
+    if (!(moments.weight > 1.0)) return {};
+    quality.inlier_share = moments.weight / static_cast<double>(events.size());
+    quality.residual_px = std::sqrt(moments.squares / moments.weight);
+    // What a perfectly aligned window would feel is no reason to move.
+    const auto& own = field.own_moments();
+    moments.pull.row(0) -= moments.weight * own.col(0).transpose();
+    moments.pull.row(2) -= moments.weight / options.patch_radius_px * own.col(1).transpose();
+    moments.pull.row(3) -= moments.weight / options.patch_radius_px * own.col(2).transpose();
+
+    Design normal = moments.normal;
+    normal.diagonal() += prior;
+    const Correction target = moments.pull - prior.asDiagonal() * moved;
+    Correction step = Correction::Zero();
+    step.topRows(free) = normal.topLeftCorner(free, free).ldlt().solve(target.topRows(free));
+    if (!step.allFinite()) return {};
+    moved += step;
+
+    // Events should appear at u + b + g dt + M u, so the template lies where the inverse of that puts it.
+    Eigen::Matrix2d m;
+    m << step(2, 0), step(3, 0), step(2, 1), step(3, 1);
+    motion->linear = motion->linear * (Eigen::Matrix2d::Identity() + m / options.patch_radius_px).inverse();
+    motion->offset -= motion->linear * step.row(0).transpose();
+    motion->flow -= motion->linear * step.row(1).transpose() / options.half_window_s;
+    quality.last_step_px = (motion->linear * step.row(0).transpose()).norm();
+    if (quality.last_step_px < kSmallestStep && step.norm() < 10.0 * kSmallestStep) break;
+  }
+  return quality;
+}
+
+}  // namespace evo

@@ -1,0 +1,52 @@
+#include "evo/tracking/em_flow.hpp"
+
+#include <cmath>
+
+namespace evo {
+
+namespace {
+
+constexpr double kSmallestShift = 0.02;  // px at the end of the window: below this the flow has settled
+// Events also move the density that pulls them, so a plain M step closes only part of the gap.
+constexpr double kOverRelaxation = 1.6;
+
+}  // namespace
+
+double FlowEstimator::Refine(const LocalEvents& events, const FlowOptions& options, Eigen::Vector2d* flow) {
+  double share = 0.0;
+  for (int iteration = 0; iteration < options.iterations; ++iteration) {
+    const auto vx = static_cast<float>(flow->x());
+    const auto vy = static_cast<float>(flow->y());
+    map_.Clear();
+    for (std::size_t i = 0; i < events.size(); ++i) {
+      map_.Vote(events.x[i] - vx * events.dt[i], events.y[i] - vy * events.dt[i], map_.PlaneOf(events.polarity[i]),
+                1.0f);
+    }
+    field_.Build(map_, options.sigma_px, options.outlier_share);
+
+    // Regression of the pull on time with an offset: the events of a window need not be centred in time.
+    Eigen::Array4f sums = Eigen::Array4f::Zero();    // of (weight, pull)
+    Eigen::Array4f sums_t = Eigen::Array4f::Zero();  // the same times dt
+    float sum_tt = 0.0f;
+    for (std::size_t i = 0; i < events.size(); ++i) {
+      const float t = events.dt[i];
+      const auto pull = field_.At(events.x[i] - vx * t, events.y[i] - vy * t, map_.PlaneOf(events.polarity[i]));
+      sums += pull;
+      sums_t += t * pull;
+      sum_tt += t * t * pull[0];
+    }
+    if (!(sums[0] > 0.0f)) return 0.0;
+    const float mean_t = sums_t[0] / sums[0];
+    const float spread = sum_tt - mean_t * sums_t[0];
+    if (!(spread > 0.0f)) return 0.0;
+    share = static_cast<double>(sums[0]) / static_cast<double>(events.size());
+    // An event late by dt sits at u = x - v dt; pulling it by d means v should fall by d / dt.
+    const Eigen::Array4f slope = (sums_t - mean_t * sums) / spread;
+    const Eigen::Vector2d step(-slope[1], -slope[2]);
+    *flow += kOverRelaxation * step;
+    if (step.norm() * options.half_window_s < kSmallestShift) break;
+  }
+  return share;
+}
+
+}  // namespace evo

@@ -1,0 +1,152 @@
+#include "evo/tracking/feature_tracker.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "evo/tracking/corner_detector.hpp"
+
+namespace evo {
+
+namespace {
+
+constexpr int kTemplateMarginPx = 4;  // the template is larger than the patch, for events that stick out
+constexpr int kCoarseIterations = 6;
+constexpr double kRebaseScale = 1.25;  // re-sample the template when the patch has grown or shrunk this much
+
+void Vote(const LocalEvents& events, const PatchMotion& motion, DensityMap* map) {
+  const Eigen::Matrix2f inverse = motion.linear.inverse().cast<float>();
+  const Eigen::Vector2f offset = motion.offset.cast<float>();
+  const Eigen::Vector2f flow = motion.flow.cast<float>();
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const Eigen::Vector2f u = inverse * Eigen::Vector2f(events.x[i] - offset.x() - flow.x() * events.dt[i],
+                                                        events.y[i] - offset.y() - flow.y() * events.dt[i]);
+    map->Vote(u.x(), u.y(), map->PlaneOf(events.polarity[i]), 1.0f);
+  }
+}
+
+}  // namespace
+
+FeatureTracker::FeatureTracker(int width, int height, const TrackerOptions& options, ThreadPool* pool)
+    : options_(options), width_(width), height_(height), pool_(pool), flow_field_(width, height, options) {}
+
+void FeatureTracker::Process(const EventHistory& history, TimeNs t) {
+  if (last_) {
+    std::vector<char> alive(features_.size());
+    pool_->ForEach(
+        features_.size(), [&](std::size_t i) { alive[i] = Track(history, t, &features_[i]) ? 1 : 0; }, 4);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < features_.size(); ++i) {
+      if (!alive[i]) continue;
+      if (kept != i) features_[kept] = std::move(features_[i]);
+      ++kept;
+    }
+    features_.erase(features_.begin() + static_cast<std::ptrdiff_t>(kept), features_.end());
+  }
+  detected_ = static_cast<double>(features_.size()) < options_.refill_below * options_.features;
+  last_ = t;
+  if (detected_) Refill(history, t);
+}
+
+bool FeatureTracker::Track(const EventHistory& history, TimeNs t, TrackedFeature* feature) const {
+  if (!Align(history, t, feature)) return false;
+  ++feature->frames;
+  const double b = options_.border_px;
+  const auto& p = feature->position;
+  return p.x() >= b && p.y() >= b && p.x() <= width_ - 1 - b && p.y() <= height_ - 1 - b;
+}
+
+bool FeatureTracker::Align(const EventHistory& history, TimeNs t, TrackedFeature* feature) const {
+  thread_local LocalEvents events;
+  thread_local AssociationField field;
+  const Eigen::Vector2d predicted = feature->position + ToSeconds(t - *last_) * feature->flow;
+  const TimeNs half_window = HalfWindow(feature->flow, options_.window_motion_px, options_);
+  history.Gather({t, predicted.x(), predicted.y(), feature->flow.x(), feature->flow.y(),
+                  static_cast<double>(options_.patch_radius_px), half_window},
+                 &events);
+  if (events.size() < static_cast<std::size_t>(options_.fewest_events)) return false;
+  events.Thin(static_cast<std::size_t>(options_.most_events));
+
+  PatchMotion motion{Eigen::Vector2d::Zero(), feature->flow, feature->linear};
+  AlignmentOptions alignment{kCoarseIterations, static_cast<double>(options_.patch_radius_px), ToSeconds(half_window),
+                             options_.flow_prior, options_.affine_prior};
+  field.Build(feature->events, options_.coarse_sigma_px, options_.outlier_share);
+  AlignToTemplate(events, field, planes(), alignment, false, &motion);
+  alignment.iterations = options_.iterations;
+  field.Build(feature->events, options_.fine_sigma_px, options_.outlier_share);
+  const AlignmentQuality quality = AlignToTemplate(events, field, planes(), alignment, true, &motion);
+
+  if (quality.inlier_share < options_.fewest_inliers || quality.residual_px > options_.largest_residual_px)
+    return false;
+  if (motion.offset.norm() > options_.largest_jump_px) return false;
+  const double growth = std::sqrt(std::abs(motion.linear.determinant()));
+  const double scale = feature->scale * growth;
+  if (!(scale < options_.largest_scale && scale > 1.0 / options_.largest_scale)) return false;
+
+  feature->position = predicted + motion.offset;
+  feature->flow = motion.flow;
+  feature->linear = motion.linear;
+  UpdateTemplate(events, motion, feature);
+  return true;
+}
+
+void FeatureTracker::UpdateTemplate(const LocalEvents& events, const PatchMotion& motion,
+                                    TrackedFeature* feature) const {
+  // A running mean at first, then one that forgets: the patch changes as it comes nearer.
+  const double gain = std::max(options_.template_gain, 1.0 / (feature->frames + 1.0));
+  feature->events.Scale(static_cast<float>(1.0 - gain));
+  thread_local std::optional<DensityMap> window;
+  if (!window || window->side() != feature->events.side() || window->planes() != feature->events.planes()) {
+    window.emplace(feature->events.radius(), feature->events.planes());
+  }
+  window->Clear();
+  Vote(events, motion, &*window);
+  // Windows weigh the same however many events they hold.
+  feature->events.Add(*window, static_cast<float>(gain / std::max(1.0, window->Total())));
+  const double growth = std::sqrt(std::abs(feature->linear.determinant()));
+  if (growth > kRebaseScale || growth < 1.0 / kRebaseScale) {
+    feature->events = feature->events.Warped(feature->linear);
+    feature->scale *= growth;
+    feature->linear.setIdentity();
+  }
+}
+
+void FeatureTracker::Refill(const EventHistory& history, TimeNs t) {
+  std::vector<FlowSample> samples;
+  std::vector<Eigen::Vector2d> taken;
+  for (const auto& feature : features_) {
+    samples.push_back({feature.position, feature.flow});
+    taken.push_back(feature.position);
+  }
+  flow_field_.Update(history, t, samples, pool_);
+  const cv::Mat image = CorrectedEventImage(history, t, flow_field_, options_.corner_window_motion_px, options_);
+  const auto corners = DetectCorners(image, taken, options_.features - static_cast<int>(features_.size()), options_);
+  std::vector<std::optional<TrackedFeature>> born(corners.size());
+  pool_->ForEach(corners.size(), [&](std::size_t i) { born[i] = Birth(history, t, corners[i]); });
+  for (auto& feature : born) {
+    if (!feature) continue;
+    feature->id = next_id_++;
+    features_.push_back(std::move(*feature));
+  }
+}
+
+std::optional<TrackedFeature> FeatureTracker::Birth(const EventHistory& history, TimeNs t,
+                                                    const Eigen::Vector2d& position) const {
+  Eigen::Vector2d flow = flow_field_.At(position.x(), position.y());
+  if (!EstimateFlow(history, t, position.x(), position.y(), options_, &flow)) return std::nullopt;
+  thread_local LocalEvents events;
+  const TimeNs half_window = HalfWindow(flow, options_.window_motion_px, options_);
+  history.Gather(
+      {t, position.x(), position.y(), flow.x(), flow.y(), static_cast<double>(options_.patch_radius_px), half_window},
+      &events);
+  if (events.size() < static_cast<std::size_t>(options_.fewest_events)) return std::nullopt;
+  TrackedFeature feature{0,    position,
+                         flow, Eigen::Matrix2d::Identity(),
+                         1.0,  DensityMap(options_.patch_radius_px + kTemplateMarginPx, planes()),
+                         1};
+  Vote(events, {Eigen::Vector2d::Zero(), flow, Eigen::Matrix2d::Identity()}, &feature.events);
+  feature.events.Scale(static_cast<float>(1.0 / std::max(1.0, feature.events.Total())));
+  return feature;
+}
+
+}  // namespace evo

@@ -1,0 +1,138 @@
+#include "evo/tracking/flow_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "evo/tracking/em_flow.hpp"
+
+namespace evo {
+
+namespace {
+
+constexpr int kCellPx = 24;
+constexpr double kNeighbourhoodPx = 40.0;  // features this near tell a cell its flow
+constexpr int kSettlingRounds = 3;
+
+}  // namespace
+
+TimeNs HalfWindow(const Eigen::Vector2d& flow, double motion_px, const TrackerOptions& options) {
+  const double window = motion_px / std::max(flow.norm(), 1e-3);
+  return FromSeconds(0.5 * std::clamp(window, options.shortest_window_s, options.longest_window_s));
+}
+
+bool EstimateFlow(const EventHistory& history, TimeNs t, double x, double y, const TrackerOptions& options,
+                  Eigen::Vector2d* flow) {
+  thread_local LocalEvents events;
+  FlowEstimator estimator(options.patch_radius_px + 2, options.use_polarity ? 2 : 1);
+  const auto gather = [&](TimeNs half_window) {
+    history.Gather({t, x, y, flow->x(), flow->y(), static_cast<double>(options.patch_radius_px), half_window}, &events);
+    events.Thin(static_cast<std::size_t>(options.most_events));
+    return events.size() >= static_cast<std::size_t>(options.fewest_events);
+  };
+  const auto refine = [&](TimeNs half_window) {
+    const FlowOptions flow_options{options.flow_sigma_px, options.outlier_share, options.iterations,
+                                   ToSeconds(half_window)};
+    return estimator.Refine(events, flow_options, flow) > 0.0;
+  };
+
+  // The shortest window with enough events: there even an unknown flow has hardly moved them.
+  TimeNs half_window = HalfWindow(*flow, options.window_motion_px, options);
+  if (flow->isZero()) half_window = FromSeconds(0.5 * options.shortest_window_s);
+  const TimeNs longest = FromSeconds(0.5 * options.longest_window_s);
+  while (!gather(half_window)) {
+    if (half_window >= longest) return false;
+    half_window = std::min(longest, half_window * 3 / 2);
+  }
+  for (int round = 0; round < kSettlingRounds; ++round) {
+    if (!refine(half_window)) return false;
+    const TimeNs next = HalfWindow(*flow, options.window_motion_px, options);
+    if (round > 0 && std::abs(next - half_window) < half_window / 5) break;
+    half_window = std::clamp(next, half_window / 2, half_window * 2);
+    if (!gather(half_window)) break;
+  }
+  return true;
+}
+
+FlowField::FlowField(int width, int height, const TrackerOptions& options)
+    : options_(options),
+      columns_(std::max(2, (width + kCellPx - 1) / kCellPx)),
+      rows_(std::max(2, (height + kCellPx - 1) / kCellPx)),
+      cells_(static_cast<std::size_t>(columns_ * rows_)) {}
+
+Eigen::Vector2d FlowField::CentreOf(std::size_t index) const {
+  const auto i = static_cast<int>(index);
+  return {(i % columns_ + 0.5) * kCellPx, (static_cast<double>(i / columns_) + 0.5) * kCellPx};
+}
+
+FlowField::Cell FlowField::FromFeatures(std::size_t index, const std::vector<FlowSample>& features) const {
+  const Eigen::Vector2d centre = CentreOf(index);
+  Cell cell;
+  double total = 0.0;
+  for (const FlowSample& feature : features) {
+    const double distance = (feature.position - centre).norm();
+    if (distance > kNeighbourhoodPx) continue;
+    const double weight = 1.0 / (4.0 + distance);
+    cell.flow += weight * feature.flow;
+    total += weight;
+  }
+  cell.known = total > 0.0;
+  if (cell.known) cell.flow /= total;
+  return cell;
+}
+
+FlowField::Cell FlowField::Estimate(const EventHistory& history, TimeNs t, const Eigen::Vector2d& centre,
+                                    const Cell& start) const {
+  Cell cell = start;
+  if (!start.known) cell.flow.setZero();
+  cell.known = EstimateFlow(history, t, centre.x(), centre.y(), options_, &cell.flow);
+  if (!cell.known) cell.flow.setZero();
+  return cell;
+}
+
+void FlowField::Update(const EventHistory& history, TimeNs t, const std::vector<FlowSample>& features,
+                       ThreadPool* pool) {
+  std::vector<Cell> next(cells_.size());
+  pool->ForEach(cells_.size(), [&](std::size_t i) {
+    const Cell known = FromFeatures(i, features);
+    next[i] = known.known ? known : Estimate(history, t, CentreOf(i), cells_[i]);
+  });
+  cells_ = std::move(next);
+  FillUnknown();
+}
+
+void FlowField::FillUnknown() {
+  const std::vector<Cell> before = cells_;
+  for (int r = 0; r < rows_; ++r) {
+    for (int c = 0; c < columns_; ++c) {
+      Cell& cell = cells_[static_cast<std::size_t>(r * columns_ + c)];
+      if (cell.known) continue;
+      Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+      int count = 0;
+      for (int dr = -1; dr <= 1; ++dr) {
+        for (int dc = -1; dc <= 1; ++dc) {
+          if (r + dr < 0 || r + dr >= rows_ || c + dc < 0 || c + dc >= columns_) continue;
+          const Cell& neighbour = before[static_cast<std::size_t>((r + dr) * columns_ + c + dc)];
+          if (!neighbour.known) continue;
+          sum += neighbour.flow;
+          ++count;
+        }
+      }
+      if (count) cell.flow = sum / count;
+    }
+  }
+}
+
+Eigen::Vector2d FlowField::At(double x, double y) const {
+  const double column = std::clamp(x / kCellPx - 0.5, 0.0, columns_ - 1.001);
+  const double row = std::clamp(y / kCellPx - 0.5, 0.0, rows_ - 1.001);
+  const int c = static_cast<int>(column);
+  const int r = static_cast<int>(row);
+  const double fx = column - c;
+  const double fy = row - r;
+  const auto flow = [&](int dr, int dc) -> const Eigen::Vector2d& {
+    return cells_[static_cast<std::size_t>((r + dr) * columns_ + c + dc)].flow;
+  };
+  return (1 - fy) * ((1 - fx) * flow(0, 0) + fx * flow(0, 1)) + fy * ((1 - fx) * flow(1, 0) + fx * flow(1, 1));
+}
+
+}  // namespace evo

@@ -1,0 +1,74 @@
+#include "evo/tracking/track_events.hpp"
+
+#include <algorithm>
+#include <future>
+#include <unordered_map>
+
+#include "evo/core/error.hpp"
+
+namespace evo {
+
+namespace {
+
+constexpr TimeNs kSlice = 2'000'000;  // short against the shortest windows, long enough to fill the tiles
+
+void DropLoneObservations(Tracks* tracks) {
+  std::unordered_map<std::int64_t, int> count;
+  for (const auto& observation : *tracks) ++count[observation.id];
+  std::erase_if(*tracks, [&](const auto& observation) { return count[observation.id] < 2; });
+}
+
+}  // namespace
+
+TrackingResult TrackEvents(EventReader* reader, int width, int height, const TrackerOptions& options, ThreadPool* pool,
+                           const std::function<void(double)>& progress,
+                           const std::function<void(const TrackingView&)>& observe) {
+  EventHistory history(width, height, kSlice);
+  FeatureTracker tracker(width, height, options, pool);
+  TrackingResult result;
+  const TimeNs interval = FromSeconds(options.frame_interval_s);
+  const TimeNs half_window = FromSeconds(0.5 * options.longest_window_s);
+
+  const auto process = [&](TimeNs t) {
+    history.DropBefore(t - half_window);
+    tracker.Process(history, t);
+    result.frames.push_back(t);
+    if (tracker.detected()) ++result.key_frames;
+    for (const auto& feature : tracker.features()) {
+      result.tracks.push_back({feature.id, t, feature.position.x(), feature.position.y()});
+    }
+    if (observe) observe({history, tracker, t});
+  };
+
+  // One block is decoded while the one before it is tracked.
+  EventColumns block, next;
+  const auto read = [&] { return reader->Next(&next); };
+  std::future<bool> pending = std::async(std::launch::async, read);
+  std::optional<TimeNs> frame;
+  TimeNs last = 0;
+  while (pending.get()) {
+    std::swap(block, next);
+    pending = std::async(std::launch::async, read);
+    if (block.empty()) continue;
+    // The first frame has half a window of events on either side.
+    if (!frame) frame = block.t.front() + std::min(half_window, interval);
+    last = block.t.back();
+    result.events += block.size();
+    history.Append(block);
+    for (; *frame + half_window + kSlice <= last; *frame += interval) process(*frame);
+    if (progress) progress(reader->progress());
+  }
+  history.Finish();
+  if (frame) {
+    for (; *frame <= last; *frame += interval) process(*frame);
+  }
+  if (result.frames.size() < 2) {
+    throw Error(
+        ErrorKind::kNothingToDo,
+        "the events span less than two event frames; choose a longer interval or a smaller tracker.frame_interval_s");
+  }
+  DropLoneObservations(&result.tracks);
+  return result;
+}
+
+}  // namespace evo

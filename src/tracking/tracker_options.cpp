@@ -1,0 +1,35 @@
+#include "evo/tracking/tracker_options.hpp"
+
+namespace evo {
+
+void Register(Parameters& parameters, TrackerOptions& o) {
+  parameters.Add("tracker.frame_interval_s", &o.frame_interval_s, 0.001, 1.0, "time between two event frames (s)");
+  parameters.Add("tracker.features", &o.features, 8, 2000, "live features to aim at");
+  parameters.Add("tracker.refill_below", &o.refill_below, 0.0, 1.0, "detect when fewer than this share is alive");
+  parameters.Add("tracker.patch_radius_px", &o.patch_radius_px, 5, 40, "half the side of a feature's patch (px)");
+  parameters.Add("tracker.window_motion_px", &o.window_motion_px, 0.5, 20.0, "motion within a feature's window (px)");
+  parameters.Add("tracker.shortest_window_s", &o.shortest_window_s, 0.0005, 1.0, "of a feature's events (s)");
+  parameters.Add("tracker.longest_window_s", &o.longest_window_s, 0.001, 2.0, "of a feature's events (s)");
+  parameters.Add("tracker.fewest_events", &o.fewest_events, 10, 10000, "in a patch's window");
+  parameters.Add("tracker.most_events", &o.most_events, 50, 1000000, "in a patch's window: of more, an even sample");
+  parameters.Add("tracker.flow_sigma_px", &o.flow_sigma_px, 0.3, 10.0, "soft association of the flow EM (px)");
+  parameters.Add("tracker.coarse_sigma_px", &o.coarse_sigma_px, 0.3, 10.0, "soft association, first alignment (px)");
+  parameters.Add("tracker.fine_sigma_px", &o.fine_sigma_px, 0.3, 10.0, "soft association, last alignment (px)");
+  parameters.Add("tracker.outlier_share", &o.outlier_share, 0.0, 10.0, "density of stray events over the mean density");
+  parameters.Add("tracker.iterations", &o.iterations, 1, 200, "of each expectation maximisation, at most");
+  parameters.Add("tracker.flow_prior", &o.flow_prior, 0.0, 1e6, "weight of the predicted flow (events)");
+  parameters.Add("tracker.affine_prior", &o.affine_prior, 0.0, 1e6, "weight of the previous affine shape (events)");
+  parameters.Add("tracker.template_gain", &o.template_gain, 0.0, 1.0, "share of the newest window in a template");
+  parameters.Add("tracker.use_polarity", &o.use_polarity, "associate events of equal sign only");
+  parameters.Add("tracker.fewest_inliers", &o.fewest_inliers, 0.0, 1.0, "share of events that the template explains");
+  parameters.Add("tracker.largest_residual_px", &o.largest_residual_px, 0.1, 20.0,
+                 "root mean square, after the fit (px)");
+  parameters.Add("tracker.largest_jump_px", &o.largest_jump_px, 0.5, 50.0, "from the predicted position (px)");
+  parameters.Add("tracker.largest_scale", &o.largest_scale, 1.1, 100.0, "of a patch against its first window");
+  parameters.Add("tracker.border_px", &o.border_px, 1.0, 100.0, "give features up this near to the sensor's edge (px)");
+  parameters.Add("tracker.corner_spacing_px", &o.corner_spacing_px, 1.0, 100.0, "between two features (px)");
+  parameters.Add("tracker.corner_share", &o.corner_share, 0.0, 1.0, "weakest corner as a share of a strong one");
+  parameters.Add("tracker.corner_window_motion_px", &o.corner_window_motion_px, 0.5, 20.0, "in the corner image (px)");
+}
+
+}  // namespace evo
