@@ -19,6 +19,12 @@ DensityMap::DensityMap(int radius_px, int planes)
 
 double DensityMap::Total() const { return std::accumulate(cells_.begin(), cells_.end(), 0.0); }
 
+double DensityMap::EffectiveCells() const {
+  const double squares = std::inner_product(cells_.begin(), cells_.end(), cells_.begin(), 0.0);
+  const double total = Total();
+  return squares > 0.0 ? total * total / squares : 0.0;
+}
+
 void DensityMap::Clear() { std::ranges::fill(cells_, 0.0f); }
 
 void DensityMap::Scale(float factor) {
@@ -102,7 +108,6 @@ void AssociationField::Build(const DensityMap& map, double sigma_px, double outl
 
   own_moments_.setZero();
   double own = 0.0;
-  double events = 0.0;
   for (int p = 0; p < map.planes(); ++p) {
     Smooth(map.plane(p), sigma_px);
     for (int r = 1; r + 1 < n; ++r) {
@@ -125,11 +130,9 @@ void AssociationField::Build(const DensityMap& map, double sigma_px, double outl
       own_moments_.row(0) += Eigen::RowVector3d(pull_x, (votes * x_ * lever).sum(), v * pull_x);
       own_moments_.row(1) += Eigen::RowVector3d(pull_y, (votes * y_ * lever).sum(), v * pull_y);
       own += (votes * weight_).sum();
-      events += votes.sum();
     }
   }
   if (own > 0.0) own_moments_ /= own;
-  own_weight_ = events > 0.0 ? own / events : 0.0;
 }
 
 }  // namespace evo

@@ -8,7 +8,7 @@ namespace evo {
 
 namespace {
 
-constexpr double kSmallestStep = 0.01;  // px
+constexpr double kSmallestStep = 0.01;  // px, of the offset; a few times that at the patch's and the window's edge
 
 using Design = Eigen::Matrix4d;                  // over (1, dt / half window, u / radius, v / radius)
 using Correction = Eigen::Matrix<double, 4, 2>;  // the same rows, for x and y
@@ -90,7 +90,7 @@ AlignmentQuality AlignToTemplate(const LocalEvents& events, const AssociationFie
     motion->offset -= motion->linear * step.row(0).transpose();
     motion->flow -= motion->linear * step.row(1).transpose() / options.half_window_s;
     quality.last_step_px = (motion->linear * step.row(0).transpose()).norm();
-    if (quality.last_step_px < kSmallestStep && step.norm() < 10.0 * kSmallestStep) break;
+    if (quality.last_step_px < kSmallestStep && step.norm() < 3.0 * kSmallestStep) break;
   }
   return quality;
 }

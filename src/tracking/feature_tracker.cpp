@@ -145,7 +145,8 @@ std::optional<TrackedFeature> FeatureTracker::Birth(const EventHistory& history,
                          1.0,  DensityMap(options_.patch_radius_px + kTemplateMarginPx, planes()),
                          1};
   Vote(events, {Eigen::Vector2d::Zero(), flow, Eigen::Matrix2d::Identity()}, &feature.events);
-  feature.events.Scale(static_cast<float>(1.0 / std::max(1.0, feature.events.Total())));
+  if (feature.events.EffectiveCells() < options_.fewest_cells) return std::nullopt;
+  feature.events.Scale(static_cast<float>(1.0 / feature.events.Total()));
   return feature;
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kCellPx = 24;
 constexpr double kNeighbourhoodPx = 40.0;  // features this near tell a cell its flow
-constexpr int kSettlingRounds = 3;
+constexpr double kCautiousShare = 0.5;  // of a window's motion, while the flow comes from elsewhere
 
 }  // namespace
 
@@ -35,22 +35,20 @@ bool EstimateFlow(const EventHistory& history, TimeNs t, double x, double y, con
     return estimator.Refine(events, flow_options, flow) > 0.0;
   };
 
-  // The shortest window with enough events: there even an unknown flow has hardly moved them.
-  TimeNs half_window = HalfWindow(*flow, options.window_motion_px, options);
-  if (flow->isZero()) half_window = FromSeconds(0.5 * options.shortest_window_s);
+  // A short window hardly moves the events even if the flow is unknown, but tells little of a slow flow; each window
+  // twice as long starts from a flow known twice as well, until the events have moved far enough.
   const TimeNs longest = FromSeconds(0.5 * options.longest_window_s);
-  while (!gather(half_window)) {
-    if (half_window >= longest) return false;
-    half_window = std::min(longest, half_window * 3 / 2);
-  }
-  for (int round = 0; round < kSettlingRounds; ++round) {
+  TimeNs half_window = flow->isZero() ? FromSeconds(0.5 * options.shortest_window_s)
+                                      : HalfWindow(*flow, kCautiousShare * options.window_motion_px, options);
+  for (bool settled = false; !settled; half_window *= 2) {
+    half_window = std::min(half_window, longest);
+    settled = half_window == longest;
+    if (!gather(half_window)) continue;
     if (!refine(half_window)) return false;
-    const TimeNs next = HalfWindow(*flow, options.window_motion_px, options);
-    if (round > 0 && std::abs(next - half_window) < half_window / 5) break;
-    half_window = std::clamp(next, half_window / 2, half_window * 2);
-    if (!gather(half_window)) break;
+    settled = settled || flow->norm() * 2.0 * ToSeconds(half_window) >= options.window_motion_px;
   }
-  return true;
+  half_window = HalfWindow(*flow, options.window_motion_px, options);
+  return gather(half_window) && refine(half_window);
 }
 
 FlowField::FlowField(int width, int height, const TrackerOptions& options)

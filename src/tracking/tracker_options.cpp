@@ -30,6 +30,7 @@ void Register(Parameters& parameters, TrackerOptions& o) {
   parameters.Add("tracker.corner_spacing_px", &o.corner_spacing_px, 1.0, 100.0, "between two features (px)");
   parameters.Add("tracker.corner_share", &o.corner_share, 0.0, 1.0, "weakest corner as a share of a strong one");
   parameters.Add("tracker.corner_window_motion_px", &o.corner_window_motion_px, 0.5, 20.0, "in the corner image (px)");
+  parameters.Add("tracker.fewest_cells", &o.fewest_cells, 0.0, 1000.0, "that a template's events fill (px)");
 }
 
 }  // namespace evo

@@ -18,6 +18,8 @@ class DensityMap {
   int PlaneOf(std::int8_t polarity) const { return planes_ == 2 && polarity < 0 ? 1 : 0; }
   const float* plane(int p) const { return cells_.data() + p * side() * side(); }
   double Total() const;
+  /// Number of cells that the events would fill if they were spread evenly: (sum n)^2 / sum n^2.
+  double EffectiveCells() const;
 
   void Clear();
   void Scale(float factor);
@@ -77,8 +79,6 @@ class AssociationField {
   /// The sums of pull x (1, u, v) that the map's own events feel, per unit of their weight: row 0 for the pull along x,
   /// row 1 along y. They are not zero (the density is blurred), and are what a perfectly aligned window would feel too.
   const Eigen::Matrix<double, 2, 3>& own_moments() const { return own_moments_; }
-  /// Mean weight of the map's own events.
-  double own_weight() const { return own_weight_; }
 
  private:
   void Smooth(const float* plane, double sigma_px);
@@ -89,7 +89,6 @@ class AssociationField {
   std::vector<float> kernel_, rows_, smooth_;
   Eigen::ArrayXf weight_, x_, y_, scale_;  // of one row of cells
   Eigen::Matrix<double, 2, 3> own_moments_ = Eigen::Matrix<double, 2, 3>::Zero();
-  double own_weight_ = 0.0;
 };
 
 }  // namespace evo

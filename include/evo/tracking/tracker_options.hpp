@@ -41,6 +41,7 @@ struct TrackerOptions {
   double corner_spacing_px = 10.0;  ///< smallest distance between two features when one is born
   double corner_share = 0.02;       ///< weakest corner accepted, as a share of a strong one (95th percentile)
   double corner_window_motion_px = 3.0;
+  double fewest_cells = 8.0;  ///< px that a template's events fill: a hot pixel fills one
 };
 
 void Register(Parameters& parameters, TrackerOptions& options);

@@ -1,0 +1,133 @@
+#include "evo/events/event_history.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <tuple>
+#include <vector>
+
+namespace evo {
+namespace {
+
+constexpr int kWidth = 50;
+constexpr int kHeight = 37;
+constexpr TimeNs kSlice = 1'000'000;
+
+EventColumns RandomEvents(std::size_t count, TimeNs begin, TimeNs end) {
+  std::mt19937 random(7);
+  EventColumns events;
+  std::vector<TimeNs> stamps(count);
+  for (TimeNs& t : stamps) t = begin + static_cast<TimeNs>(random() % static_cast<std::uint64_t>(end - begin));
+  std::ranges::sort(stamps);
+  for (const TimeNs t : stamps) {
+    events.push_back(t, static_cast<std::uint16_t>(random() % kWidth), static_cast<std::uint16_t>(random() % kHeight),
+                     random() % 2 ? 1 : -1);
+  }
+  return events;
+}
+
+using Row = std::tuple<float, float, float, int>;
+
+std::vector<Row> Sorted(const LocalEvents& local) {
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < local.size(); ++i)
+    rows.emplace_back(local.dt[i], local.x[i], local.y[i], local.polarity[i]);
+  std::ranges::sort(rows);
+  return rows;
+}
+
+TEST(EventHistory, GathersExactlyTheEventsOfAMovingPatch) {
+  // Stamps on both sides of zero and a gap without events.
+  EventColumns events = RandomEvents(3000, -10'000'000, 5'000'000);
+  EventHistory history(kWidth, kHeight, kSlice);
+  history.Append(events);
+  history.Append(RandomEvents(1000, 9'500'000, 12'000'000));
+  history.Finish();
+  const EventColumns later = RandomEvents(1000, 9'500'000, 12'000'000);
+  for (std::size_t i = 0; i < later.size(); ++i) {
+    events.push_back(later.t[i], later.x[i], later.y[i], later.polarity[i]);
+  }
+  const MovingPatch patches[] = {{0, 25, 18, 0, 0, 6, 4'000'000},
+                                 {-3'000'000, 4, 30, 900, -700, 5, 3'000'000},
+                                 {10'000'000, 49, 0, -2000, 100, 9, 2'500'000}};
+  for (const MovingPatch& patch : patches) {
+    std::vector<Row> expected;
+    for (std::size_t i = 0; i < events.size(); ++i) {
+      const double dt = ToSeconds(events.t[i] - patch.t);
+      const double x = events.x[i] - patch.x;
+      const double y = events.y[i] - patch.y;
+      if (std::abs(events.t[i] - patch.t) > patch.half_window) continue;
+      if (std::abs(x - patch.vx * dt) > patch.radius || std::abs(y - patch.vy * dt) > patch.radius) continue;
+      expected.emplace_back(dt, x, y, events.polarity[i]);
+    }
+    std::ranges::sort(expected);
+    LocalEvents local;
+    history.Gather(patch, &local);
+    const auto found = Sorted(local);
+    ASSERT_EQ(found.size(), expected.size());
+    EXPECT_GT(found.size(), 10u);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      EXPECT_NEAR(std::get<0>(found[i]), std::get<0>(expected[i]), 1e-8);
+      EXPECT_EQ(std::get<1>(found[i]), std::get<1>(expected[i]));
+      EXPECT_EQ(std::get<3>(found[i]), std::get<3>(expected[i]));
+    }
+  }
+}
+
+TEST(EventHistory, DoesNotDependOnHowTheStreamIsCutIntoBlocks) {
+  const EventColumns events = RandomEvents(2000, 0, 20'000'000);
+  EventHistory whole(kWidth, kHeight, kSlice), pieces(kWidth, kHeight, kSlice);
+  whole.Append(events);
+  EventColumns piece;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    piece.push_back(events.t[i], events.x[i], events.y[i], events.polarity[i]);
+    if (i % 77 == 0) {
+      pieces.Append(piece);
+      piece.clear();
+    }
+  }
+  pieces.Append(piece);
+  whole.Finish();
+  pieces.Finish();
+  LocalEvents a, b;
+  const MovingPatch patch{10'000'000, 25, 18, 100, 50, 10, 10'000'000};
+  whole.Gather(patch, &a);
+  pieces.Gather(patch, &b);
+  EXPECT_EQ(a.x, b.x);
+  EXPECT_EQ(a.dt, b.dt);
+}
+
+TEST(EventHistory, ForgetsWhatIsDropped) {
+  EventHistory history(kWidth, kHeight, kSlice);
+  history.Append(RandomEvents(2000, 0, 20'000'000));
+  history.Finish();
+  EXPECT_EQ(history.CountBetween(0, 20'000'000), 2000u);
+  history.DropBefore(10'000'000);
+  EXPECT_EQ(history.CountBetween(0, 10'000'000), 0u);
+  std::size_t visited = 0;
+  history.ForEachBetween(0, 20'000'000, [&](int, int, TimeNs t, std::int8_t) {
+    EXPECT_GE(t, 10'000'000);
+    ++visited;
+  });
+  EXPECT_EQ(visited, history.CountBetween(0, 20'000'000));
+}
+
+TEST(LocalEvents, ThinsEvenly) {
+  LocalEvents local;
+  for (int i = 0; i < 100; ++i) {
+    local.x.push_back(static_cast<float>(i));
+    local.y.push_back(0);
+    local.dt.push_back(0);
+    local.polarity.push_back(1);
+  }
+  local.Thin(200);
+  EXPECT_EQ(local.size(), 100u);
+  local.Thin(20);
+  ASSERT_EQ(local.size(), 20u);
+  for (std::size_t i = 0; i < local.size(); ++i) EXPECT_EQ(local.x[i], 5.0f * static_cast<float>(i));
+}
+
+}  // namespace
+}  // namespace evo

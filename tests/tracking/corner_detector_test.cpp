@@ -1,0 +1,94 @@
+#include "evo/tracking/corner_detector.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "tracking/synthetic_events.hpp"
+
+namespace evo {
+namespace {
+
+using Eigen::Vector2d;
+
+cv::Mat Squares() {
+  cv::Mat image = cv::Mat::zeros(120, 160, CV_32F);
+  for (int y = 20; y < 110; y += 40) {
+    for (int x = 20; x < 150; x += 40) image(cv::Rect(x, y, 18, 18)) = 4.0f;
+  }
+  return image;
+}
+
+TEST(DetectCorners, FindsTheCornersOfSquaresAndNothingElse) {
+  const auto corners = DetectCorners(Squares(), {}, 100, {});
+  EXPECT_GE(corners.size(), 30u);
+  for (const auto& corner : corners) {
+    double nearest = 1e9;
+    for (int y = 20; y < 110; y += 40) {
+      for (int x = 20; x < 150; x += 40) {
+        for (const auto& c : {Vector2d(x, y), Vector2d(x + 17, y), Vector2d(x, y + 17), Vector2d(x + 17, y + 17)}) {
+          nearest = std::min(nearest, (c - corner).norm());
+        }
+      }
+    }
+    EXPECT_LT(nearest, 4.0) << corner.transpose();
+  }
+}
+
+TEST(DetectCorners, KeepsItsDistanceFromFeaturesAndFromEachOther) {
+  TrackerOptions options;
+  options.corner_spacing_px = 15.0;
+  const std::vector<Vector2d> taken = {{20, 20}, {77, 77}};
+  const auto corners = DetectCorners(Squares(), taken, 100, options);
+  ASSERT_FALSE(corners.empty());
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    for (const auto& point : taken) EXPECT_GE((corners[i] - point).norm(), 15.0);
+    for (std::size_t j = 0; j < i; ++j) EXPECT_GE((corners[i] - corners[j]).norm(), 15.0);
+  }
+}
+
+TEST(DetectCorners, SpreadsAFewOverTheWholeImage) {
+  const auto corners = DetectCorners(Squares(), {}, 12, {});
+  ASSERT_EQ(corners.size(), 12u);
+  const auto in = [&](double x0, double x1) {
+    return std::ranges::count_if(corners, [&](const auto& c) { return c.x() >= x0 && c.x() < x1; });
+  };
+  EXPECT_GE(in(0, 53), 2);
+  EXPECT_GE(in(53, 106), 2);
+  EXPECT_GE(in(106, 160), 2);
+}
+
+TEST(DetectCorners, FindsNothingInAnEmptyImage) {
+  EXPECT_TRUE(DetectCorners(cv::Mat::zeros(50, 50, CV_32F), {}, 10, {}).empty());
+}
+
+TEST(CorrectedEventImage, IsSharperThanTheRawOne) {
+  const evo::testing::CrossScene scene(40, 2);
+  const TrackerOptions options;
+  EventHistory history(scene.width, scene.height, 2'000'000);
+  history.Append(scene.Events([](double t) { return Vector2d(Vector2d(150.0, 150.0) * (t - 0.1)); }, 0.2, 1000.0));
+  history.Finish();
+  ThreadPool pool(1);
+  FlowField flow(scene.width, scene.height, options);
+  const TimeNs t = 100'000'000;
+  flow.Update(history, t, {}, &pool);
+  const cv::Mat corrected = CorrectedEventImage(history, t, flow, 8.5, options);
+  cv::Mat raw = cv::Mat::zeros(scene.height, scene.width, CV_32F);
+  history.ForEachBetween(t - 20'000'000, t + 20'000'000,
+                         [&](int x, int y, TimeNs, std::int8_t) { raw.at<float>(y, x) += 1.0f; });
+  const auto contrast = [](const cv::Mat& image) {  // sum of squares over square of sum
+    double squares = 0, sum = 0;
+    for (int y = 0; y < image.rows; ++y) {
+      for (int x = 0; x < image.cols; ++x) {
+        squares += image.at<float>(y, x) * image.at<float>(y, x);
+        sum += image.at<float>(y, x);
+      }
+    }
+    return squares / (sum * sum);
+  };
+  EXPECT_GT(contrast(corrected), 1.5 * contrast(raw));
+}
+
+}  // namespace
+}  // namespace evo

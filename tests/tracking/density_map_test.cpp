@@ -1,0 +1,79 @@
+#include "evo/tracking/density_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace evo {
+namespace {
+
+TEST(DensityMap, VotesAreBilinearAndLoseNothingInside) {
+  DensityMap map(5, 2);
+  map.Vote(0.25f, -1.5f, 1, 2.0f);
+  EXPECT_FLOAT_EQ(static_cast<float>(map.Total()), 2.0f);
+  const float* plane = map.plane(1);
+  const auto cell = [&](int x, int y) { return plane[(y + 5) * map.side() + x + 5]; };
+  EXPECT_FLOAT_EQ(cell(0, -2), 2.0f * 0.75f * 0.5f);
+  EXPECT_FLOAT_EQ(cell(1, -1), 2.0f * 0.25f * 0.5f);
+  map.Vote(5.5f, 0.0f, 0, 1.0f);
+  map.Vote(std::nanf(""), 0.0f, 0, 1.0f);
+  EXPECT_FLOAT_EQ(static_cast<float>(map.Total()), 2.0f);
+}
+
+TEST(DensityMap, WarpMovesCellsAndKeepsTheNumberOfEvents) {
+  DensityMap map(12, 1);
+  for (int i = -2; i <= 2; ++i) {
+    for (int j = -2; j <= 2; ++j) map.Vote(4.0f + 0.5f * i, 2.0f + 0.5f * j, 0, 1.0f);
+  }
+  Eigen::Matrix2d linear;
+  linear << 1.5, 0.0, 0.0, 1.5;
+  const DensityMap warped = map.Warped(linear);
+  EXPECT_NEAR(warped.Total(), map.Total(), 0.05 * map.Total());
+  double x = 0, y = 0;
+  for (int r = 0; r < warped.side(); ++r) {
+    for (int c = 0; c < warped.side(); ++c) {
+      x += warped.plane(0)[r * warped.side() + c] * (c - 12);
+      y += warped.plane(0)[r * warped.side() + c] * (r - 12);
+    }
+  }
+  EXPECT_NEAR(x / warped.Total(), 6.0, 0.1);
+  EXPECT_NEAR(y / warped.Total(), 3.0, 0.1);
+}
+
+TEST(DensityMap, EffectiveCellsCountsHowFarEventsSpread) {
+  DensityMap map(6, 1);
+  for (int i = 0; i < 100; ++i) map.Vote(0.0f, 0.0f, 0, 1.0f);
+  EXPECT_NEAR(map.EffectiveCells(), 1.0, 1e-6);
+  map.Clear();
+  for (int i = -4; i < 4; ++i) map.Vote(static_cast<float>(i), 0.0f, 0, 1.0f);
+  EXPECT_NEAR(map.EffectiveCells(), 8.0, 1e-5);
+}
+
+TEST(AssociationField, MeanShiftOfOnePointLeadsBackToIt) {
+  // The density of a single point p is N(u; p, sigma^2): its mean shift is exactly p - u.
+  DensityMap map(15, 1);
+  map.Vote(2.0f, -3.0f, 0, 100.0f);
+  AssociationField field;
+  field.Build(map, 2.0, 0.01);
+  for (const auto& [x, y] : {std::pair{3.0f, -3.0f}, {1.0f, -1.0f}, {2.5f, -4.5f}}) {
+    const auto pull = field.At(x, y, 0);
+    ASSERT_GT(pull[0], 0.5f);
+    EXPECT_NEAR(pull[1] / pull[0], 2.0f - x, 0.25f);
+    EXPECT_NEAR(pull[2] / pull[0], -3.0f - y, 0.25f);
+  }
+  EXPECT_LT(field.At(-12.0f, 12.0f, 0)[0], 0.01f);
+  EXPECT_EQ(field.At(40.0f, 0.0f, 0)[0], 0.0f);
+}
+
+TEST(AssociationField, KeepsPolaritiesApart) {
+  DensityMap map(10, 2);
+  map.Vote(0.0f, 0.0f, map.PlaneOf(1), 10.0f);
+  map.Vote(4.0f, 0.0f, map.PlaneOf(-1), 10.0f);
+  AssociationField field;
+  field.Build(map, 1.0, 0.1);
+  EXPECT_LT(field.At(1.0f, 0.0f, map.PlaneOf(1))[1], 0.0f);
+  EXPECT_GT(field.At(3.0f, 0.0f, map.PlaneOf(-1))[1], 0.0f);
+}
+
+}  // namespace
+}  // namespace evo

@@ -1,0 +1,137 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <random>
+
+#include "evo/tracking/em_affine.hpp"
+#include "evo/tracking/em_flow.hpp"
+#include "evo/tracking/flow_field.hpp"
+#include "tracking/synthetic_events.hpp"
+
+namespace evo {
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::Vector2d;
+
+/// Events of edges near the centre under a known motion of the patch, with pixel noise.
+LocalEvents PatchEvents(const PatchMotion& motion, double half_window_s, int count, unsigned seed) {
+  std::mt19937 random(seed);
+  const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
+  const Vector2d corners[] = {{-9, -7}, {8, -9}, {10, 6}, {-6, 9}, {0, 1}, {3, -2}};
+  LocalEvents events;
+  for (int i = 0; i < count; ++i) {
+    const int edge = static_cast<int>(uniform() * 5.0);
+    const Vector2d u = corners[edge] + uniform() * (corners[edge + 1] - corners[edge]);
+    const double dt = half_window_s * (2.0 * uniform() - 1.0);
+    const Vector2d x = motion.offset + motion.flow * dt + motion.linear * u;
+    events.x.push_back(static_cast<float>(x.x() + 0.6 * (uniform() - 0.5)));
+    events.y.push_back(static_cast<float>(x.y() + 0.6 * (uniform() - 0.5)));
+    events.dt.push_back(static_cast<float>(dt));
+    events.polarity.push_back(edge % 2 ? 1 : -1);
+  }
+  return events;
+}
+
+DensityMap TemplateOf(const LocalEvents& events) {
+  DensityMap map(19, 2);
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    map.Vote(events.x[i], events.y[i], map.PlaneOf(events.polarity[i]), 1.0f);
+  }
+  return map;
+}
+
+TEST(FlowEstimator, RefinesAFlowThatMovesThePatchAFewPixels) {
+  for (const Vector2d& truth : {Vector2d(150, 40), Vector2d(-80, -160), Vector2d(0, 30)}) {
+    const double half_window = 2.0 / truth.norm();
+    const LocalEvents events = PatchEvents({Vector2d::Zero(), truth, Matrix2d::Identity()}, half_window, 400, 5);
+    FlowEstimator estimator(17, 2);
+    Vector2d flow = 0.6 * truth;
+    const double share = estimator.Refine(events, {1.5, 0.2, 50, half_window}, &flow);
+    EXPECT_GT(share, 0.7);
+    EXPECT_LT((flow - truth).norm(), 0.08 * truth.norm()) << truth.transpose();
+  }
+}
+
+TEST(EstimateFlow, FindsSlowAndFastFlowsFromNothing) {
+  const evo::testing::CrossScene scene(60, 11);
+  const TrackerOptions options;
+  for (const Vector2d& truth : {Vector2d(30, -10), Vector2d(120, 60), Vector2d(-350, 100)}) {
+    EventHistory history(scene.width, scene.height, 2'000'000);
+    history.Append(scene.Events([&](double t) { return Vector2d(truth * (t - 0.1)); }, 0.2, 1000.0));
+    history.Finish();
+    int good = 0;
+    int estimated = 0;
+    for (int x = 25; x < scene.width - 20; x += 17) {
+      for (int y = 25; y < scene.height - 20; y += 17) {
+        Vector2d flow = Vector2d::Zero();
+        if (!EstimateFlow(history, 100'000'000, x, y, options, &flow)) continue;
+        ++estimated;
+        // Slow arms of a cross stay in their row of pixels for most of a window: some px/s are beyond reach.
+        if ((flow - truth).norm() < 0.12 * truth.norm() + 8.0) ++good;
+      }
+    }
+    EXPECT_GE(estimated, 10);
+    EXPECT_GE(good, 0.9 * estimated) << truth.transpose();
+  }
+}
+
+TEST(EstimateFlow, SaysWhereThereIsNothing) {
+  const EventHistory history(50, 50, 2'000'000);
+  Vector2d flow = Vector2d::Zero();
+  EXPECT_FALSE(EstimateFlow(history, 0, 25, 25, TrackerOptions{}, &flow));
+}
+
+TEST(AlignToTemplate, RecoversAKnownAffineMotion) {
+  const DensityMap map = TemplateOf(PatchEvents({}, 0.01, 2000, 1));
+  AssociationField coarse, fine;
+  coarse.Build(map, 2.5, 0.2);
+  fine.Build(map, 1.0, 0.2);
+  PatchMotion truth;
+  truth.offset = {1.7, -1.1};
+  truth.flow = {90, -40};
+  truth.linear << 1.06, 0.02, -0.03, 1.04;
+  const LocalEvents events = PatchEvents(truth, 0.02, 600, 2);
+
+  PatchMotion motion;
+  motion.flow = {80, -30};
+  AlignmentOptions options{20, 15.0, 0.02, 5.0, 5.0};
+  AlignToTemplate(events, coarse, 2, options, false, &motion);
+  options.iterations = 50;
+  const AlignmentQuality quality = AlignToTemplate(events, fine, 2, options, true, &motion);
+  EXPECT_GT(quality.inlier_share, 0.7);
+  EXPECT_LT(quality.residual_px, 1.0);
+  EXPECT_LT((motion.offset - truth.offset).norm(), 0.15);
+  EXPECT_LT((motion.flow - truth.flow).norm(), 12.0);
+  EXPECT_LT((motion.linear - truth.linear).norm(), 0.04);
+}
+
+TEST(AlignToTemplate, LeavesAnAlignedWindowWhereItIs) {
+  // A blurred density pulls even perfectly aligned events inwards; the template must not shrink for it.
+  const LocalEvents events = PatchEvents({}, 0.01, 2000, 1);
+  const DensityMap map = TemplateOf(events);
+  AssociationField field;
+  field.Build(map, 1.0, 0.2);
+  PatchMotion motion;
+  AlignToTemplate(events, field, 2, {50, 15.0, 0.01, 0.0, 0.0}, true, &motion);
+  EXPECT_LT(motion.offset.norm(), 0.03);
+  EXPECT_NEAR(std::sqrt(motion.linear.determinant()), 1.0, 0.005);
+}
+
+TEST(AlignToTemplate, TellsForeignEventsFromItsOwn) {
+  const DensityMap map = TemplateOf(PatchEvents({}, 0.01, 2000, 1));
+  AssociationField field;
+  field.Build(map, 1.0, 0.2);
+  PatchMotion elsewhere;
+  elsewhere.linear << 0.0, 1.0, -1.0, 0.0;
+  const LocalEvents own = PatchEvents({}, 0.01, 500, 3);
+  const LocalEvents foreign = PatchEvents(elsewhere, 0.01, 500, 4);
+  PatchMotion a, b;
+  const AlignmentOptions options{20, 15.0, 0.01, 20.0, 50.0};
+  EXPECT_GT(AlignToTemplate(own, field, 2, options, true, &a).inlier_share,
+            1.5 * AlignToTemplate(foreign, field, 2, options, true, &b).inlier_share);
+}
+
+}  // namespace
+}  // namespace evo

@@ -1,0 +1,123 @@
+#include "evo/tracking/track_events.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "evo/core/error.hpp"
+#include "tracking/synthetic_events.hpp"
+
+namespace evo {
+namespace {
+
+using Eigen::Vector2d;
+using evo::testing::CrossScene;
+using evo::testing::MemoryReader;
+using evo::testing::Motion;
+
+constexpr double kDuration = 0.6;
+
+/// To the right, slower and slower, then back to the left: a track that lags behind its stamps by d ends up away from
+/// where it should be by d times the change of velocity.
+Vector2d ThereAndBack(double t) { return 0.6 / M_PI * std::sin(M_PI * t / 0.6) * Vector2d(150.0, 40.0); }
+
+TrackingResult TrackAll(const EventColumns& events, int threads, const TrackerOptions& options = {}) {
+  MemoryReader reader(events);
+  ThreadPool pool(threads);
+  return TrackEvents(&reader, 120, 90, options, &pool, {});
+}
+
+class TrackEventsTest : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    events = new EventColumns(CrossScene(60, 4).Events(ThereAndBack, kDuration, 1000.0));
+    result = new TrackingResult(TrackAll(*events, 1));
+  }
+  static void TearDownTestSuite() {
+    delete events;
+    delete result;
+  }
+  static EventColumns* events;
+  static TrackingResult* result;
+};
+
+EventColumns* TrackEventsTest::events = nullptr;
+TrackingResult* TrackEventsTest::result = nullptr;
+
+TEST_F(TrackEventsTest, TracksFollowTheSceneWithoutLag) {
+  std::map<std::int64_t, std::vector<TrackObservation>> tracks;
+  for (const auto& observation : result->tracks) tracks[observation.id].push_back(observation);
+  std::vector<double> errors;
+  Vector2d mean = Vector2d::Zero();
+  int both_ways = 0;
+  for (const auto& [id, track] : tracks) {
+    const auto& first = track.front();
+    const auto& last = track.back();
+    if (ToSeconds(first.t) > 0.25 || ToSeconds(last.t) < 0.4) continue;
+    ++both_ways;
+    const Vector2d moved(last.x - first.x, last.y - first.y);
+    const Vector2d error = moved - (ThereAndBack(ToSeconds(last.t)) - ThereAndBack(ToSeconds(first.t)));
+    errors.push_back(error.norm());
+    mean += error;
+  }
+  ASSERT_GE(both_ways, 15);
+  std::ranges::sort(errors);
+  EXPECT_LT(errors[errors.size() / 2], 0.25);
+  // Over these tracks the velocity changes by some 200 px/s: a lag of 1 ms would shift them all by 0.2 px.
+  EXPECT_LT((mean / both_ways).norm(), 0.1);
+}
+
+TEST_F(TrackEventsTest, MostTracksOutliveTheTurn) {
+  std::map<std::int64_t, int> count;
+  for (const auto& observation : result->tracks) ++count[observation.id];
+  double frames = 0;
+  for (const auto& [id, n] : count) frames += n;
+  EXPECT_GT(frames / static_cast<double>(count.size()), 10.0);
+}
+
+TEST_F(TrackEventsTest, ObservationsAreSortedUniqueAndAtFrameStamps) {
+  const std::set<TimeNs> frames(result->frames.begin(), result->frames.end());
+  EXPECT_EQ(frames.size(), result->frames.size());
+  for (std::size_t i = 0; i < result->tracks.size(); ++i) {
+    EXPECT_TRUE(frames.contains(result->tracks[i].t));
+    if (i == 0) continue;
+    const auto key = [](const TrackObservation& o) { return std::pair(o.t, o.id); };
+    EXPECT_LT(key(result->tracks[i - 1]), key(result->tracks[i]));
+  }
+  EXPECT_EQ(result->events, events->size());
+}
+
+TEST_F(TrackEventsTest, SameTracksForAnyNumberOfThreads) {
+  const TrackingResult other = TrackAll(*events, 3);
+  ASSERT_EQ(other.tracks.size(), result->tracks.size());
+  for (std::size_t i = 0; i < other.tracks.size(); ++i) {
+    EXPECT_EQ(other.tracks[i].id, result->tracks[i].id);
+    EXPECT_EQ(other.tracks[i].x, result->tracks[i].x);
+    EXPECT_EQ(other.tracks[i].y, result->tracks[i].y);
+  }
+}
+
+TEST_F(TrackEventsTest, AHotPixelIsNoFeature) {
+  EventColumns hot;
+  for (TimeNs t = 0; t < 600'000'000; t += 100'000) hot.push_back(t, 60, 45, t % 200'000 ? 1 : -1);
+  EXPECT_TRUE(TrackAll(hot, 1).tracks.empty());
+}
+
+TEST(TrackEvents, SaysWhenThereAreNoTwoFrames) {
+  EventColumns few;
+  few.push_back(0, 1, 1, 1);
+  few.push_back(1000, 2, 2, 1);
+  try {
+    TrackAll(few, 1);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::kNothingToDo);
+  }
+}
+
+}  // namespace
+}  // namespace evo
