@@ -127,6 +127,7 @@ Evaluation Evaluate(const Trajectory& truth, const Trajectory& estimate, std::sp
                                              " holds no poses; check what was written to it");
   }
   Evaluation evaluation;
+  evaluation.longest_gap = FromSeconds(options.gap_s);
   evaluation.from = interval.from.value_or(truth.front().t);
   evaluation.to = interval.to.value_or(truth.back().t);
 
@@ -142,7 +143,7 @@ Evaluation Evaluate(const Trajectory& truth, const Trajectory& estimate, std::sp
 
   const TimeNs offset = FromSeconds(options.association.estimate_clock_offset_s);
   const Trajectory judged = MoveToTruthClock(estimate, offset, evaluation.from, evaluation.to);
-  const auto coverage = ComputeCoverage(judged, evaluation.from, evaluation.to, FromSeconds(options.gap_s));
+  const auto coverage = ComputeCoverage(judged, evaluation.from, evaluation.to, evaluation.longest_gap);
   const auto distances = ComputeDistances(truth, pairs);
   evaluation.truth = Crop(truth, evaluation.from, evaluation.to);
   evaluation.up = UpDirection(options.up, truth);

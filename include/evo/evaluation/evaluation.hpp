@@ -63,11 +63,12 @@ struct AlignedEvaluation {
 struct Evaluation {
   TimeNs from = 0;  ///< the interval judged
   TimeNs to = 0;
-  Trajectory truth;       ///< the truth within it
-  Eigen::Vector3d up;     ///< unit vector in the truth's world frame
-  double path_m = 0.0;    ///< length of the truth from the first pair to the last
-  double coverage = 0.0;  ///< share of the interval outside gaps, in [0, 1]
-  std::int64_t gaps = 0;  ///< stretches without a pose longer than `gap_s`, start and end of the interval included
+  Trajectory truth;        ///< the truth within it
+  Eigen::Vector3d up;      ///< unit vector in the truth's world frame
+  double path_m = 0.0;     ///< length of the truth from the first pair to the last
+  double coverage = 0.0;   ///< share of the interval outside gaps, in [0, 1]
+  TimeNs longest_gap = 0;  ///< a stretch of the interval without a pose that is longer is a gap
+  std::int64_t gaps = 0;   ///< their number, those at the start and the end of the interval included
   std::vector<AlignedEvaluation> alignments;
 };
 
