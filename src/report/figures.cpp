@@ -12,15 +12,17 @@ namespace {
 
 // Okabe & Ito.
 constexpr const char* kBlue = "#0072B2";
-constexpr const char* kGreen = "#009E73";
 constexpr const char* kVermilion = "#D55E00";
 constexpr const char* kSkyBlue = "#56B4E9";
+// The truth lies wide and light under the thin dark estimate: told apart in grey as well.
+constexpr const char* kTruthBlue = "#7DB7E8";
+constexpr const char* kEstimateGreen = "#00664A";
 
 constexpr const char* kStyle =
     "set border 3 linecolor '#404040'\n"
-    "set tics nomirror textcolor '#202020'\n"
+    "set tics out nomirror textcolor '#202020'\n"
     "set grid linecolor '#d8d8d8' linetype 1 linewidth 0.5\n"
-    "set key outside top center horizontal samplen 3\n";
+    "set key outside top center horizontal maxrows 1 samplen 2.5\n";
 
 std::string Print(const char* format, double value) {
   char buffer[400];
@@ -108,9 +110,10 @@ Figure TrajectoryFigure(const std::string& name, const Evaluation& evaluation, c
          << "set xlabel '" << names[axes.right] << " (m)'\n"
          << "set ylabel '" << names[axes.away] << " (m)'\n"
          << "data = '" << name << ".dat'\n"
-         << "plot data index 0 using 2:3 with lines linewidth 5 linecolor '" << kBlue << "' title 'ground truth', \\\n"
-         << "  data index 1 using 2:3 with lines linewidth 2 dashtype (12,5) linecolor '" << kGreen
-         << "' title 'estimate (" << result.alignment.name << ")', \\\n"
+         << "plot data index 0 using 2:3 with lines linewidth 7 linecolor '" << kTruthBlue
+         << "' title 'ground truth', \\\n"
+         << "  data index 1 using 2:3 with lines linewidth 2 linecolor '" << kEstimateGreen << "' title 'estimate ("
+         << result.alignment.name << ")', \\\n"
          << "  data index 0 every ::0::0 using 2:3 with points pointtype 7 pointsize 1.1 linecolor '#000000' title "
             "'start'\n";
   figure.script = script.str();
@@ -119,6 +122,7 @@ Figure TrajectoryFigure(const std::string& name, const Evaluation& evaluation, c
 
 Figure ErrorFigure(const std::string& name, const Evaluation& evaluation, const AlignedEvaluation& result) {
   Range time;
+  Range meters;
   std::ostringstream data;
   data << "# seconds, longitudinal (m), lateral (m), planar (m); alignment " << result.alignment.name << "\n";
   for (std::size_t i = 0; i < result.errors.size(); ++i) {
@@ -127,20 +131,25 @@ Figure ErrorFigure(const std::string& name, const Evaluation& evaluation, const 
     data << Number(error.seconds) << ' ' << Number(error.driving.longitudinal) << ' ' << Number(error.driving.lateral)
          << ' ' << Number(error.driving.planar) << '\n';
     time.Add(error.seconds);
+    for (const double value : {error.driving.longitudinal, error.driving.lateral, error.driving.planar}) {
+      meters.Add(value);
+    }
   }
   time.WidenTo(1e-3);
+  meters.WidenTo(std::max(1.1 * meters.length(), 1e-6));
 
   std::ostringstream script;
   script << kStyle << "set xrange " << time << "\n"
          << "set xlabel 'time (s)'\n"
+         << "set yrange " << meters << "\n"
          << "set ylabel 'error of position (m)'\n"
          << "set xzeroaxis linetype 1 linewidth 1 linecolor '#808080'\n";
   if (evaluation.path_m > 0.0) {
-    const std::string percent = Number(100.0 / evaluation.path_m);
-    script << "set border 11\n"
-           << "set link y2 via " << percent << " * y inverse y / " << percent << "\n"
+    const double percent = 100.0 / evaluation.path_m;
+    script << "set border 11 linecolor '#404040'\n"
+           << "set y2range " << Range{percent * meters.low, percent * meters.high} << "\n"
            << "set y2tics textcolor '#202020'\n"
-           << "set y2label '% of the path of " << std::lround(evaluation.path_m) << " m'\n";
+           << "set y2label '% of the path of " << std::lround(evaluation.path_m) << " m' offset 1\n";
   }
   script << "data = '" << name << ".dat'\n"
          << "plot data using 1:4 with lines linewidth 3 linecolor '#000000' title 'planar', \\\n"
@@ -176,7 +185,7 @@ Figure LifetimeFigure(const std::string& name, const LifetimeStatistics& statist
          << "plot '" << name << ".dat' using (0.5 * ($1 + $2)):3:($2 - $1) with boxes linecolor '" << kSkyBlue
          << "' title '" << statistics.tracks << " tracks of " << kFewestFrames << " frames or more', \\\n"
          << "  NaN with lines linewidth 3 dashtype (8,4) linecolor '" << kVermilion << "' title 'mean "
-         << Print("%.3f", statistics.in_frames.mean) << ", standard deviation "
+         << Print("%.3f", statistics.in_frames.mean) << ", std "
          << Print("%.3f", statistics.in_frames.standard_deviation) << "'\n";
   return {data.str(), script.str()};
 }

@@ -50,10 +50,10 @@ std::string Script(const std::string& name, const Figure& figure) {
   std::ostringstream script;
   script << "# 'gnuplot " << name << ".gp' in this folder draws " << name << ".svg and " << name << ".pdf again.\n"
          << "set terminal svg noenhanced size " << figure.width << "," << figure.height
-         << " font 'DejaVu Sans,15' background '#ffffff'\n"
+         << " font 'DejaVu Sans,14' background '#ffffff'\n"
          << "set output '" << name << ".svg'\n"
          << figure.script << "set terminal pdfcairo noenhanced size " << kPdfWidthInches << ","
-         << kPdfWidthInches * figure.height / figure.width << " font 'DejaVu Sans,10' linewidth 1.2\n"
+         << kPdfWidthInches * figure.height / figure.width << " font 'DejaVu Sans,13' linewidth 1.2\n"
          << "set output '" << name << ".pdf'\n"
          << "replot\n"
          << "unset output\n";

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -16,7 +17,7 @@ std::string Format(double value) {
   if (!std::isfinite(value)) return "";
   char buffer[400];  // the longest double in fixed point has 309 digits before the point
   std::snprintf(buffer, sizeof buffer, "%.9f", value);
-  return buffer;
+  return std::strcmp(buffer, "-0.000000000") == 0 ? buffer + 1 : buffer;
 }
 
 /// A cell of a CSV file: quoted where it must be (RFC 4180).
