@@ -16,6 +16,13 @@ void EventColumns::reserve(std::size_t count) {
   polarity.reserve(count);
 }
 
+void EventColumns::resize(std::size_t count) {
+  t.resize(count);
+  x.resize(count);
+  y.resize(count);
+  polarity.resize(count);
+}
+
 void EventColumns::push_back(TimeNs time, std::uint16_t column, std::uint16_t row, std::int8_t sign) {
   t.push_back(time);
   x.push_back(column);

@@ -19,6 +19,7 @@ struct EventColumns {
   bool empty() const { return t.empty(); }
   void clear();
   void reserve(std::size_t count);
+  void resize(std::size_t count);
   void push_back(TimeNs time, std::uint16_t column, std::uint16_t row, std::int8_t sign);
 };
 

@@ -1,10 +1,8 @@
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <string>
 
 #include "evo/core/time.hpp"
 #include "evo/events/event_columns.hpp"
@@ -22,9 +20,9 @@ class EventReader {
  public:
   virtual ~EventReader() = default;
 
-  /// Replaces `block` by the next events, at most a few hundred thousand; false when there are no more.
-  /// Throws Error (kInput) on NaN, time that runs backwards, a pixel off the sensor, a bad polarity or a truncated
-  /// file.
+  /// Replaces `block` by the next events, at most a few hundred thousand; false when there are no more. Handing the
+  /// same block in again saves allocations. Throws Error (kInput) on NaN, time that runs backwards, a pixel off the
+  /// sensor, a bad polarity or a truncated file. Only what lies in the interval is read, so only that is checked.
   virtual bool Next(EventColumns* block) = 0;
 
   /// Stamp of the first event of the whole recording (not of the interval).
@@ -33,8 +31,15 @@ class EventReader {
   virtual double progress() const = 0;
 };
 
-/// Opens an MVSEC .hdf5 (left DAVIS), a UZH events.txt or a folder that holds one.
+/// Opens an MVSEC .hdf5 (left DAVIS), a UZH events.txt or a folder that holds either; the kind is told by content.
 /// `width` x `height` px is the sensor that the calibration promises.
+///
+/// MVSEC: `davis/left/events`, N x 4 of x y t p in any numeric type and any layout; t in seconds. An integer type
+/// cannot hold seconds: its stamps are taken as epoch micro- or nanoseconds where their size tells which, and refused
+/// otherwise. A block is a whole number of chunks, so nothing is inflated twice; a single huge chunk is held in memory.
+/// UZH: lines `t x y p`, t in seconds, exact to the nanosecond.
+/// Both: p is 1, and 0 or -1 for darker. The interval's ends are found by bisection, without reading what lies before.
+///
 /// Throws Error: kInput for a missing, unreadable or foreign file, kNothingToDo if no event lies in the interval.
 std::unique_ptr<EventReader> OpenEvents(const std::filesystem::path& path, const Interval& interval, int width,
                                         int height);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "evo/core/time.hpp"
@@ -16,7 +17,19 @@ struct TrackObservation {
   double y = 0.0;  ///< px
 };
 
-/// Sorted by time, then id.
+/// Sorted by time, then id; one observation for each id and stamp.
 using Tracks = std::vector<TrackObservation>;
+
+/// Reads rows `id t x y` (this project, EKLT, rpg_feature_tracking_analysis) or `t,x,y,theta,id` (HASTE), told by their
+/// commas, t in seconds. Rows may come in any order. Rows that repeat an id and a stamp: event-by-event HASTE updates
+/// twice on simultaneous events, so its last row counts; elsewhere equal rows are dropped and differing ones refused.
+/// Throws Error (kInput) with file and line.
+Tracks ReadTracks(const std::filesystem::path& path);
+
+/// Writes rows `id t x y` in the order given: stamps with nine decimals, pixels with four, below the header line
+/// `# id timestamp x y` and one comment line for each of `comments`. Throws Error (kOutput, or kInput for a position
+/// that is not finite).
+void WriteTracks(const std::filesystem::path& path, const Tracks& tracks,
+                 const std::vector<std::string>& comments = {});
 
 }  // namespace evo

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+
+#include "evo/events/event_columns.hpp"
+#include "evo/geometry/trajectory.hpp"
+
+namespace evo {
+
+/// Writes `davis/left/events` (N x 4 float64: x y t p, t in seconds, p = +-1) block by block, in chunks that are
+/// byte-shuffled and deflated. The file appears whole on Commit() or not at all. Throws Error (kOutput).
+class MvsecEventWriter {
+ public:
+  explicit MvsecEventWriter(const std::filesystem::path& path);
+  ~MvsecEventWriter();
+
+  /// Events in order of time, after those appended before.
+  void Append(const EventColumns& events);
+  void Commit();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// All of `events` in one call.
+void WriteMvsecEvents(const std::filesystem::path& path, const EventColumns& events);
+
+/// Writes an MVSEC _gt.hdf5: `davis/left/odometry` (LOAM's place) and `davis/left/pose` (Cartographer's), N x 4 x 4
+/// row-major T_world_cam with their stamps in seconds. Throws Error (kOutput).
+void WriteMvsecGroundTruth(const std::filesystem::path& path, const Trajectory& odometry, const Trajectory& pose);
+
+}  // namespace evo

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+
+#include "evo/geometry/trajectory.hpp"
+
+namespace evo {
+
+/// Which of an MVSEC file's two trajectories is the truth.
+enum class GroundTruthSource {
+  kLoam,          ///< `davis/left/odometry`: locally consistent, drifts
+  kCartographer,  ///< `davis/left/pose`: loop-closed in the plane, or motion capture indoors
+};
+
+/// Reads lines `t px py pz qx qy qz qw` (TUM, also UZH's groundtruth.txt): T_world_cam, seconds, metres, Hamilton
+/// quaternion of norm 1 within 1e-3. Lines starting with `#` are comments.
+/// Throws Error (kInput) with file and line; stamps must strictly increase and there must be a pose.
+Trajectory ReadTum(const std::filesystem::path& path);
+
+/// Reads the `source` of an MVSEC _gt.hdf5 (N x 4 x 4 row-major T_world_cam and N stamps in seconds) or, whatever the
+/// source, a TUM text, told by content. Throws Error (kInput) with file and row.
+Trajectory ReadGroundTruth(const std::filesystem::path& path, GroundTruthSource source);
+
+/// Writes a TUM text: single spaces, stamps with nine decimals, the rest with twelve.
+/// Throws Error (kOutput, or kInput for a pose that is not finite).
+void WriteTum(const std::filesystem::path& path, const Trajectory& trajectory);
+
+}  // namespace evo

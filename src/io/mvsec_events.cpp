@@ -1,0 +1,170 @@
+#include "io/mvsec_events.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "io/event_reader_parts.hpp"
+#include "io/text_lines.hpp"
+
+namespace evo {
+
+namespace {
+
+constexpr hsize_t kBlockRows = 65536;          // at least, in whole chunks
+constexpr hsize_t kLargestBlockRows = 262144;  // larger chunks are read in parts
+constexpr double kLargestNs = 9e18;            // what int64 holds
+constexpr double kCoarsestStampS = 1e-3;
+constexpr double kFirstEpochS = 5e8;  // 1985: a stamp counted from 1970 is told from one counted from zero
+constexpr double kLastEpochS = 8e9;   // 2223
+
+/// FromSeconds without its calls to the mathematics library; `seconds` must be in range.
+TimeNs SecondsToNs(double seconds) {
+  auto whole = static_cast<TimeNs>(seconds);
+  whole -= static_cast<double>(whole) > seconds ? 1 : 0;
+  return whole * kNsPerSecond + static_cast<TimeNs>((seconds - static_cast<double>(whole)) * 1e9 + 0.5);
+}
+
+std::string Row(hsize_t row) { return " row " + std::to_string(row) + ": "; }
+
+std::string NoTime(double stamp) { return "the stamp " + FormatNumber(stamp) + " is not a time"; }
+
+bool IsPolarity(double p) { return (p == 1.0) | (p == 0.0) | (p == -1.0); }
+
+}  // namespace
+
+MvsecEvents::MvsecEvents(const hdf5::File& file) : events_(file.Open(kMvsecEvents)) {
+  CheckShape();
+  unit_ = FindUnit();
+  CheckResolution();
+}
+
+void MvsecEvents::CheckShape() const {
+  const auto& shape = events_.shape();
+  if (shape.size() != 2 || shape[1] != 4) {
+    std::string text;
+    for (const hsize_t size : shape) text += (text.empty() ? "" : " x ") + std::to_string(size);
+    throw events_.Failure(" has the shape " + text + "; expected N x 4 with the columns x y t p");
+  }
+  if (shape[0] == 0) throw events_.Failure(" holds no events");
+}
+
+MvsecEvents::StampUnit MvsecEvents::FindUnit() const {
+  if (!events_.is_integer()) return {};
+  const double first = events_.ReadElement(0, 2);
+  for (const TimeNs ns_per_tick : {TimeNs{1}, TimeNs{1000}}) {
+    const double seconds = first * static_cast<double>(ns_per_tick) * 1e-9;
+    if (seconds >= kFirstEpochS && seconds <= kLastEpochS) return {false, ns_per_tick};
+  }
+  throw events_.Failure(" holds integers, and the unit of its stamps (first: " + FormatNumber(first) +
+                        ") cannot be told; store the stamps as float64 seconds");
+}
+
+/// A float32 holds an epoch stamp to two minutes: such a file has lost its times.
+void MvsecEvents::CheckResolution() const {
+  if (events_.is_integer() || events_.element_bytes() >= sizeof(double)) return;
+  const auto last = static_cast<float>(std::abs(events_.ReadElement(rows() - 1, 2)));
+  const double step = std::nextafter(last, HUGE_VALF) - last;
+  if (std::isfinite(last) && step > kCoarsestStampS) {
+    throw events_.Failure(" holds float32 numbers, which keep its stamps only to " + FormatNumber(step) +
+                          " s; store them as float64");
+  }
+}
+
+hsize_t MvsecEvents::block_rows() const {
+  const hsize_t chunk = std::max<hsize_t>(events_.chunk_rows(), 1);
+  return chunk > kLargestBlockRows ? kLargestBlockRows : (kBlockRows + chunk - 1) / chunk * chunk;
+}
+
+bool MvsecEvents::InRange(double stamp) const {
+  return std::abs(stamp) < (unit_.seconds ? kLargestNs * 1e-9 : kLargestNs / static_cast<double>(unit_.ns_per_tick));
+}
+
+TimeNs MvsecEvents::ToNs(double stamp) const {
+  return unit_.seconds ? SecondsToNs(stamp) : static_cast<TimeNs>(stamp) * unit_.ns_per_tick;
+}
+
+TimeNs MvsecEvents::StampAt(hsize_t row) const {
+  const double stamp = events_.ReadElement(row, 2);
+  if (!InRange(stamp)) throw events_.Failure(Row(row) + NoTime(stamp));
+  return ToNs(stamp);
+}
+
+hsize_t MvsecEvents::FirstAtOrAfter(TimeNs target) const {
+  hsize_t low = 0;
+  hsize_t high = rows();
+  while (low < high) {
+    const hsize_t middle = low + (high - low) / 2;
+    if (StampAt(middle) < target) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+void MvsecEvents::Read(hsize_t first, std::size_t count, TimeNs previous, int width, int height, EventColumns* block) {
+  values_.resize(std::max(values_.size(), 4 * count));
+  events_.Read(first, count, values_.data());
+  block->resize(count);
+  // The two passes have no branches: which event is at fault is looked up only when there is one.
+  if (ConvertStamps(count, previous, block) && ConvertPixels(count, width, height, block)) return;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double* const event = &values_[4 * i];
+    const std::string fault = Fault(event, previous, width, height);
+    if (!fault.empty()) throw events_.Failure(Row(first + i) + fault);
+    previous = ToNs(event[2]);
+  }
+}
+
+bool MvsecEvents::ConvertStamps(std::size_t count, TimeNs previous, EventColumns* block) const {
+  bool valid = true;
+  for (std::size_t i = 0; i < count; ++i) valid &= InRange(values_[4 * i + 2]);
+  if (!valid) return false;
+  TimeNs* const stamps = block->t.data();
+  for (std::size_t i = 0; i < count; ++i) {
+    const TimeNs t = ToNs(values_[4 * i + 2]);
+    valid &= t >= previous;
+    stamps[i] = previous = t;
+  }
+  return valid;
+}
+
+bool MvsecEvents::ConvertPixels(std::size_t count, int width, int height, EventColumns* block) const {
+  const double right = width;
+  const double bottom = height;
+  std::uint16_t* const columns = block->x.data();
+  std::uint16_t* const rows = block->y.data();
+  std::int8_t* const polarities = block->polarity.data();
+  bool valid = true;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = values_[4 * i];
+    const double y = values_[4 * i + 1];
+    const double p = values_[4 * i + 3];
+    const bool inside = (x >= 0.0) & (x < right) & (y >= 0.0) & (y < bottom);
+    const int column = inside ? static_cast<int>(x) : 0;
+    const int row = inside ? static_cast<int>(y) : 0;
+    valid &= inside & (column == x) & (row == y) & IsPolarity(p);
+    columns[i] = static_cast<std::uint16_t>(column);
+    rows[i] = static_cast<std::uint16_t>(row);
+    polarities[i] = p > 0.0 ? 1 : -1;
+  }
+  return valid;
+}
+
+/// What is wrong with one row, in the order in which a reader would want to know; empty if nothing is.
+std::string MvsecEvents::Fault(const double* event, TimeNs previous, int width, int height) const {
+  const double x = event[0];
+  const double y = event[1];
+  if (!InRange(event[2])) return NoTime(event[2]);
+  if (ToNs(event[2]) < previous) return BackwardsMessage(previous, ToNs(event[2]));
+  if (!std::isfinite(x + y) || x != std::floor(x) || y != std::floor(y)) {
+    return "the pixel (" + FormatNumber(x) + ", " + FormatNumber(y) + ") is not whole";
+  }
+  if (x < 0.0 || x >= width || y < 0.0 || y >= height) return OffSensorMessage(x, y, width, height);
+  if (!IsPolarity(event[3])) return "the polarity " + FormatNumber(event[3]) + " is none of -1, 0 and 1";
+  return "";
+}
+
+}  // namespace evo

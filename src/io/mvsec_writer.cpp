@@ -1,0 +1,150 @@
+#include "evo/io/mvsec_writer.hpp"
+
+#include <string>
+#include <vector>
+
+#include "evo/core/error.hpp"
+#include "evo/core/output_file.hpp"
+#include "io/hdf5.hpp"
+
+namespace evo {
+
+namespace {
+
+constexpr hsize_t kChunkRows = 65536;
+constexpr unsigned kDeflateLevel = 4;
+
+/// The double nearest to the stamp: a plain product would round an epoch stamp twice.
+double NearestSeconds(TimeNs t) {
+  return static_cast<double>(t / kNsPerSecond) + static_cast<double>(t % kNsPerSecond) / 1e9;
+}
+
+/// A file being written, with the groups davis/left.
+class Hdf5Output {
+ public:
+  explicit Hdf5Output(const std::filesystem::path& path) : pending_(path) {
+    hdf5::Silence();
+    file_ = Checked(H5Fcreate(pending_.temporary().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    with_groups_ = hdf5::Handle(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+    H5Pset_create_intermediate_group(with_groups_.get(), 1);
+  }
+
+  hdf5::Handle CreateDataset(const std::string& name, const std::vector<hsize_t>& shape,
+                             const std::vector<hsize_t>& chunk = {}) {
+    std::vector<hsize_t> most = shape;
+    const hdf5::Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    if (!chunk.empty()) {
+      most[0] = H5S_UNLIMITED;
+      H5Pset_chunk(creation.get(), static_cast<int>(chunk.size()), chunk.data());
+      H5Pset_shuffle(creation.get());
+      H5Pset_deflate(creation.get(), kDeflateLevel);
+    }
+    const hdf5::Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), most.data()), H5Sclose);
+    return Checked(H5Dcreate2(file_.get(), name.c_str(), H5T_NATIVE_DOUBLE, space.get(), with_groups_.get(),
+                              creation.get(), H5P_DEFAULT),
+                   H5Dclose);
+  }
+
+  void Write(const std::string& name, const std::vector<hsize_t>& shape, const std::vector<double>& values) {
+    const hdf5::Handle dataset = CreateDataset(name, shape);
+    Check(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0);
+  }
+
+  void Commit() {
+    Check(file_.Close());
+    pending_.Commit();
+  }
+
+  void Check(bool good) const {
+    if (good) return;
+    throw Error(ErrorKind::kOutput, pending_.path().string() + ": writing failed: " + hdf5::LastFailure() +
+                                        "; is the folder writable and the disk not full?");
+  }
+
+ private:
+  hdf5::Handle Checked(hid_t id, herr_t (*close)(hid_t)) const {
+    Check(id >= 0);
+    return {id, close};
+  }
+
+  PendingPath pending_;
+  hdf5::Handle file_;
+  hdf5::Handle with_groups_;
+};
+
+void WritePoses(Hdf5Output* output, const std::string& name, const Trajectory& trajectory) {
+  std::vector<double> seconds;
+  std::vector<double> matrices;
+  for (const auto& [t, T] : trajectory) {
+    seconds.push_back(NearestSeconds(t));
+    const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> matrix = T.Matrix();
+    matrices.insert(matrices.end(), matrix.data(), matrix.data() + matrix.size());
+  }
+  output->Write(name, {trajectory.size(), 4, 4}, matrices);
+  output->Write(name + "_ts", {trajectory.size()}, seconds);
+}
+
+}  // namespace
+
+struct MvsecEventWriter::State {
+  explicit State(const std::filesystem::path& path) : output(path) {
+    dataset = output.CreateDataset("davis/left/events", {0, 4}, {kChunkRows, 4});
+  }
+
+  /// Writes the rows that wait.
+  void Flush() {
+    const hsize_t count = waiting.size() / 4;
+    const hsize_t offset[] = {rows, 0};
+    const hsize_t block[] = {count, 4};
+    const hsize_t shape[] = {rows + count, 4};
+    output.Check(H5Dset_extent(dataset.get(), shape) >= 0);
+    const hdf5::Handle memory(H5Screate_simple(2, block, nullptr), H5Sclose);
+    const hdf5::Handle space(H5Dget_space(dataset.get()), H5Sclose);
+    output.Check(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, offset, nullptr, block, nullptr) >= 0);
+    output.Check(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, memory.get(), space.get(), H5P_DEFAULT, waiting.data()) >=
+                 0);
+    rows += count;
+    waiting.clear();
+  }
+
+  Hdf5Output output;
+  hdf5::Handle dataset;
+  hsize_t rows = 0;
+  std::vector<double> waiting;  ///< rows of a chunk that is not full yet
+};
+
+MvsecEventWriter::MvsecEventWriter(const std::filesystem::path& path) : state_(std::make_unique<State>(path)) {}
+
+MvsecEventWriter::~MvsecEventWriter() = default;
+
+void MvsecEventWriter::Append(const EventColumns& events) {
+  auto& waiting = state_->waiting;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    waiting.push_back(events.x[i]);
+    waiting.push_back(events.y[i]);
+    waiting.push_back(NearestSeconds(events.t[i]));
+    waiting.push_back(events.polarity[i]);
+    if (waiting.size() == 4 * kChunkRows) state_->Flush();
+  }
+}
+
+void MvsecEventWriter::Commit() {
+  if (!state_->waiting.empty()) state_->Flush();
+  state_->output.Check(state_->dataset.Close());
+  state_->output.Commit();
+}
+
+void WriteMvsecEvents(const std::filesystem::path& path, const EventColumns& events) {
+  MvsecEventWriter writer(path);
+  writer.Append(events);
+  writer.Commit();
+}
+
+void WriteMvsecGroundTruth(const std::filesystem::path& path, const Trajectory& odometry, const Trajectory& pose) {
+  Hdf5Output output(path);
+  WritePoses(&output, "davis/left/odometry", odometry);
+  WritePoses(&output, "davis/left/pose", pose);
+  output.Commit();
+}
+
+}  // namespace evo
