@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "evo/core/time.hpp"
-#include "evo/geometry/trajectory.hpp"
+#include "evo/io/trajectory_io.hpp"
 
 namespace evo {
 
@@ -16,20 +15,7 @@ inline std::filesystem::path ReferencePath(const std::string& name) {
   return std::filesystem::path(EVO_SOURCE_DIR) / "tests/evaluation/data" / name;
 }
 
-inline Trajectory ReadReferenceTrajectory(const std::string& name) {
-  std::ifstream file(ReferencePath(name));
-  Trajectory trajectory;
-  for (std::string line; std::getline(file, line);) {
-    if (line.starts_with('#')) continue;
-    std::istringstream fields(line);
-    std::string stamp;
-    Eigen::Vector3d p;
-    Eigen::Quaterniond q;
-    fields >> stamp >> p.x() >> p.y() >> p.z() >> q.x() >> q.y() >> q.z() >> q.w();
-    trajectory.push_back({ParseTime(stamp).value(), SE3(q, p)});
-  }
-  return trajectory;
-}
+inline Trajectory ReadReferenceTrajectory(const std::string& name) { return ReadTum(ReferencePath(name)); }
 
 /// The rows of a CSV file, each by column name.
 inline std::vector<std::map<std::string, std::string>> ReadReferenceTable(const std::string& name) {
