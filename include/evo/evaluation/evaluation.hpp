@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "evo/core/parameters.hpp"
+#include "evo/core/time.hpp"
+#include "evo/evaluation/alignment.hpp"
+#include "evo/evaluation/association.hpp"
+#include "evo/evaluation/driving.hpp"
+#include "evo/evaluation/statistics.hpp"
+#include "evo/geometry/trajectory.hpp"
+
+namespace evo {
+
+struct EvaluationOptions {
+  AssociationOptions association;
+  std::string up = "auto";  ///< see UpDirection
+  double chord_m = 1.0;     ///< see DrivingFrame
+  double gap_s = 0.5;       ///< a longer stretch without an estimated pose is a gap
+};
+
+void Register(Parameters& parameters, EvaluationOptions& options);
+
+/// The stretch of time to judge, in the clock of the ground truth; an end that is missing is that of the truth.
+struct EvaluationInterval {
+  std::optional<TimeNs> from;
+  std::optional<TimeNs> to;  ///< inclusive
+};
+
+/// One pose after alignment.
+struct PoseError {
+  TimeNs stamp = 0;          ///< as written in the estimate
+  double seconds = 0.0;      ///< since the start of the interval
+  double distance = 0.0;     ///< m that the truth has travelled since the first pair
+  DrivingError driving;      ///< m
+  double translation = 0.0;  ///< m, in space
+  double rotation_deg = 0.0;
+};
+
+/// One component of the error of position over all poses, m.
+struct ErrorSummary {
+  double mean_abs = 0.0;
+  double rmse = 0.0;
+  double max_abs = 0.0;
+  double final = 0.0;  ///< at the last pose, with its sign
+};
+
+/// What one alignment gives.
+struct AlignedEvaluation {
+  Alignment alignment;
+  Similarity similarity;
+  Trajectory aligned;  ///< every estimated pose of the interval, in the truth's world frame and clock
+  std::vector<PoseError> errors;
+  ErrorSummary longitudinal, lateral, vertical, planar;
+  Statistics ape;           ///< absolute pose error, translation, m
+  Statistics rotation_deg;  ///< absolute pose error, rotation angle, degrees
+};
+
+struct Evaluation {
+  TimeNs from = 0;  ///< the interval judged
+  TimeNs to = 0;
+  Trajectory truth;        ///< the truth within it
+  Eigen::Vector3d up;      ///< unit vector in the truth's world frame
+  double path_m = 0.0;     ///< length of the truth from the first pair to the last
+  double coverage = 0.0;   ///< share of the interval outside gaps, in [0, 1]
+  TimeNs longest_gap = 0;  ///< a stretch of the interval without a pose that is longer is a gap
+  std::int64_t gaps = 0;   ///< their number, those at the start and the end of the interval included
+  std::vector<AlignedEvaluation> alignments;
+};
+
+/// Judges `estimate` by `truth`. Throws Error: kNothingToDo where they do not overlap in time, kDegenerateAlignment as
+/// Align does.
+Evaluation Evaluate(const Trajectory& truth, const Trajectory& estimate, std::span<const Alignment> alignments,
+                    const EvaluationInterval& interval, const EvaluationOptions& options);
+
+}  // namespace evo

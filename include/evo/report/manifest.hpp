@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "evo/core/time.hpp"
+
+namespace evo {
+
+struct ManifestInput {
+  std::string role;  ///< "events", "calibration", "ground_truth", ...
+  std::filesystem::path path;
+  std::uint64_t bytes = 0;
+  std::string sha256;
+};
+
+struct StageTime {
+  std::string stage;
+  double seconds = 0.0;  ///< wall time
+};
+
+/// What a run was made of and what it cost: enough to repeat it and to compare it with another.
+struct Manifest {
+  std::string version;
+  std::vector<std::string> command_line;
+  std::vector<std::pair<std::string, std::string>> parameters;  ///< every one, by dotted name, as in effect
+  std::vector<ManifestInput> inputs;
+  std::vector<std::pair<std::string, std::int64_t>> counts;  ///< "events", "tracks", "frames", ...
+  std::vector<StageTime> stages;
+  std::vector<TimeNs> rebootstraps;  ///< stamps of the frames at which the odometry started anew
+};
+
+/// manifest.json; the peak memory of this process so far is added. Throws Error (kOutput).
+void WriteManifest(const std::filesystem::path& path, const Manifest& manifest);
+
+/// Most memory that this process has held so far, MB (10^6 bytes).
+double PeakMemoryMb();
+
+}  // namespace evo

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <filesystem>
+
+#include "evo/report/draw.hpp"
+
+namespace evo {
+
+/// Writes `canvas` as an 8-bit RGB PNG, whole or not at all; the same image gives the same bytes.
+/// Throws Error (kOutput).
+void WritePng(const std::filesystem::path& path, const Canvas& canvas);
+
+}  // namespace evo

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "evo/evaluation/evaluation.hpp"
+#include "evo/tracking/lifetime.hpp"
+
+namespace evo {
+
+/// One row of a table: column name and value. NaN is an empty cell in CSV and null in JSON.
+using TableRow = std::vector<std::pair<std::string, std::variant<std::string, std::int64_t, double>>>;
+
+/// One row for each alignment: lengths in m, angles in degrees, percentages of the true path. Columns keep their names
+/// and order from version to version; new ones come last.
+std::vector<TableRow> SummaryRows(const std::string& sequence, const Evaluation& evaluation);
+
+/// summary.csv: a header, then the rows. All writers here throw Error (kOutput) and leave no half-written file.
+void WriteCsv(const std::filesystem::path& path, const std::vector<TableRow>& rows);
+/// summary.json: an array of objects with the same names and values.
+void WriteJson(const std::filesystem::path& path, const std::vector<TableRow>& rows);
+
+/// errors.csv: a row a pose, `stamp` (s, as in the estimate), `distance`, `longitudinal`, `lateral`, `vertical`,
+/// `planar`, `translation` (m, see PoseError and DrivingError for the signs) and `rotation_deg`.
+void WriteErrors(const std::filesystem::path& path, const std::vector<PoseError>& errors);
+
+/// lifetime.csv: columns `quantity,unit,bin_low,bin_high,value`. First the summary, whose bin columns are empty
+/// (frames, tracks, tracks_too_short, tracks_cut_short; mean, standard_deviation, median, max in frames and in s), then
+/// one row "histogram" a bin: `value` tracks live bin_low frames or more but fewer than bin_high.
+void WriteLifetimes(const std::filesystem::path& path, const LifetimeStatistics& statistics);
+
+/// The summary for people: a few aligned lines that end with a newline.
+std::string FormatSummary(const Evaluation& evaluation);
+
+}  // namespace evo

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "evo/core/time.hpp"
+#include "evo/io/tracks.hpp"
+
+namespace evo {
+
+/// Tracks seen in fewer frames than this say nothing about stability and are left out, as in the paper's table 2.
+inline constexpr int kFewestFrames = 3;
+
+/// Mean and spread of one quantity over the tracks; all 0 where there are no tracks.
+struct LifetimeMoments {
+  double mean = 0.0;
+  double standard_deviation = 0.0;  ///< of the population (divided by n)
+  double median = 0.0;
+  double max = 0.0;
+};
+
+/// Tracks that live `low` frames or more but fewer than `high`.
+struct LifetimeBin {
+  int low = 0;
+  int high = 0;
+  std::int64_t tracks = 0;
+};
+
+/// How long features were followed.
+struct LifetimeStatistics {
+  std::int64_t frames = 0;            ///< frames of the recording
+  std::int64_t tracks = 0;            ///< tracks that count: kFewestFrames observations or more
+  std::int64_t tracks_too_short = 0;  ///< tracks with fewer, left out of everything below
+  std::int64_t tracks_cut_short = 0;  ///< counted tracks still alive in the last frame: they would have lived longer
+  LifetimeMoments in_frames;          ///< observations of a track
+  LifetimeMoments in_seconds;         ///< last stamp of a track minus its first
+  /// Without holes from kFewestFrames to past the longest track; equal widths of 1, 2, 5, 10, 20, ... frames.
+  std::vector<LifetimeBin> histogram;
+};
+
+/// `frame_stamps` are those of all frames of the recording, ascending, those without any track included.
+LifetimeStatistics ComputeLifetimes(const Tracks& tracks, std::span<const TimeNs> frame_stamps);
+
+}  // namespace evo

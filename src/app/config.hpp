@@ -1,0 +1,18 @@
+#pragma once
+
+#include "evo/core/parameters.hpp"
+#include "evo/evaluation/evaluation.hpp"
+
+namespace evo::app {
+
+/// The options of all stages, gathered in one place, and their names for files and --set.
+struct Config {
+  Config() { Register(parameters, evaluation); }
+  Config(const Config&) = delete;  // the parameters refer to the fields
+  Config& operator=(const Config&) = delete;
+
+  EvaluationOptions evaluation;
+  Parameters parameters;
+};
+
+}  // namespace evo::app

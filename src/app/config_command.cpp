@@ -1,0 +1,43 @@
+#include <iostream>
+#include <memory>
+
+#include "app/commands.hpp"
+#include "app/config.hpp"
+#include "app/options.hpp"
+
+namespace evo::app {
+
+namespace {
+
+struct ConfigArguments {
+  CommonOptions common;
+  bool print = false;
+  std::string check;
+};
+
+void RunConfig(const ConfigArguments& arguments) {
+  Config config;
+  arguments.common.Apply(&config);
+  if (arguments.print) {
+    std::cout << config.parameters.ToYaml();
+  } else {
+    config.parameters.LoadFile(arguments.check);
+    std::cout << arguments.check << ": every parameter is known and in range\n";
+  }
+}
+
+}  // namespace
+
+Command AddConfigCommand(CLI::App& app) {
+  auto arguments = std::make_shared<ConfigArguments>();
+  auto* const parser = app.add_subcommand("config", "Print all parameters or check a configuration file");
+  auto* const action = parser->add_option_group("action")->require_option(1);
+  action->add_flag("--print", arguments->print, "print every parameter with its value, range and meaning as YAML");
+  action->add_option("--check", arguments->check, "report the first mistake in a configuration file")
+      ->type_name("FILE");
+  AddConfigurationOptions(*parser, arguments->common);
+  parser->footer("Example:\n  evo-run config --print > mine.yaml");
+  return {parser, [arguments](const auto&) { RunConfig(*arguments); }};
+}
+
+}  // namespace evo::app

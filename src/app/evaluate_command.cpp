@@ -1,0 +1,122 @@
+#include <spdlog/spdlog.h>
+
+#include <iostream>
+#include <memory>
+
+#include "app/commands.hpp"
+#include "app/config.hpp"
+#include "app/evaluation_results.hpp"
+#include "app/interrupt.hpp"
+#include "app/options.hpp"
+#include "app/output_folder.hpp"
+#include "app/run_record.hpp"
+#include "evo/core/error.hpp"
+#include "evo/report/tables.hpp"
+
+namespace evo::app {
+
+namespace {
+
+struct EvaluateArguments {
+  CommonOptions common;
+  std::string estimate;
+  std::string ground_truth;
+  std::string align = "origin-scale,sim3";
+  std::string association;
+  std::string up;
+  std::string from;
+  std::string to;
+  std::string sequence;
+  std::string out;
+  bool no_plots = false;
+};
+
+std::optional<TimeNs> ParseStamp(const std::string& option, const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const auto stamp = ParseTime(text);
+  if (!stamp) throw Error(ErrorKind::kUsage, option + ": '" + text + "' is not a stamp in seconds");
+  return stamp;
+}
+
+EvaluationInterval ParseInterval(const EvaluateArguments& arguments) {
+  const EvaluationInterval interval{ParseStamp("--from-stamp", arguments.from), ParseStamp("--to-stamp", arguments.to)};
+  if (interval.from && interval.to && *interval.from >= *interval.to) {
+    throw Error(ErrorKind::kUsage, "--from-stamp must come before --to-stamp");
+  }
+  return interval;
+}
+
+void RunEvaluate(const EvaluateArguments& arguments, const std::vector<std::string>& command_line) {
+  Config config;
+  arguments.common.Apply(&config);
+  if (!arguments.association.empty()) config.evaluation.association.association = arguments.association;
+  if (!arguments.up.empty()) config.evaluation.up = arguments.up;
+  const auto alignments = ParseAlignments(arguments.align);
+  const auto interval = ParseInterval(arguments);
+
+  auto results = EvaluationResultNames(alignments);
+  results.emplace_back("manifest.json");
+  PrepareOutputFolder(arguments.out, results, arguments.common.force);
+  const InterruptGuard guard(arguments.out);
+  RunRecord record(command_line, config.parameters);
+  record.AddInput("estimate", arguments.estimate);
+  record.AddInput("ground_truth", arguments.ground_truth);
+
+  Trajectory estimate;
+  Trajectory truth;
+  record.Time("read", [&] {
+    estimate = ReadTum(arguments.estimate);
+    truth = ReadGroundTruth(arguments.ground_truth, arguments.common.ground_truth_source);
+  });
+  const auto evaluation =
+      record.Time("evaluate", [&] { return Evaluate(truth, estimate, alignments, interval, config.evaluation); });
+  spdlog::debug("up in the world of the ground truth: {} {} {}", evaluation.up.x(), evaluation.up.y(),
+                evaluation.up.z());
+  const std::string sequence = arguments.sequence.empty() ? SequenceName(arguments.ground_truth) : arguments.sequence;
+  record.Time("write", [&] { WriteEvaluationResults(arguments.out, sequence, evaluation, !arguments.no_plots); });
+
+  record.AddCount("estimated_poses", estimate.size());
+  record.AddCount("true_poses", truth.size());
+  record.AddCount("matched_poses", evaluation.alignments.front().errors.size());
+  WriteManifest(std::filesystem::path(arguments.out) / "manifest.json", record.manifest);
+  std::cout << FormatSummary(evaluation);
+}
+
+}  // namespace
+
+Command AddEvaluateCommand(CLI::App& app) {
+  auto arguments = std::make_shared<EvaluateArguments>();
+  auto* const parser = app.add_subcommand("evaluate", "Compare a trajectory with the ground truth");
+  parser->add_option("--estimate", arguments->estimate, "estimated trajectory, TUM text")
+      ->required()
+      ->type_name("FILE");
+  parser->add_option("--ground-truth", arguments->ground_truth, "MVSEC _gt.hdf5, UZH groundtruth.txt or TUM text")
+      ->required()
+      ->type_name("FILE");
+  parser
+      ->add_option("--align", arguments->align,
+                   "comma-separated list of none, origin, origin-scale, se3, sim3, first:SECONDS")
+      ->capture_default_str()
+      ->type_name("LIST");
+  parser->add_option("--association", arguments->association, "interpolate the truth (default) or take evo's nearest")
+      ->check(CLI::IsMember({"interpolate", "nearest"}).description(""))
+      ->type_name("interpolate|nearest");
+  parser->add_option("--up", arguments->up, "axis of the truth's world that points up; write --up=-y")
+      ->check(CLI::IsMember({"auto", "x", "y", "z", "-x", "-y", "-z"}).description(""))
+      ->type_name("auto|[-]x|y|z");
+  parser->add_option("--from-stamp", arguments->from, "judge only from this stamp of the ground truth on")
+      ->type_name("S");
+  parser->add_option("--to-stamp", arguments->to, "judge only up to this stamp")->type_name("S");
+  parser->add_option("--sequence", arguments->sequence, "name in the tables; default: that of the ground truth")
+      ->type_name("NAME");
+  parser->add_option("--out", arguments->out, "folder for the results")->required()->type_name("DIR");
+  parser->add_flag("--no-plots", arguments->no_plots, "write tables only");
+  AddConfigurationOptions(*parser, arguments->common);
+  AddRunOptions(*parser, arguments->common);
+  parser->footer(
+      "Example:\n  evo-run evaluate --estimate out/trajectory.txt --ground-truth outdoor_day2_gt.hdf5 --align "
+      "origin-scale,sim3 --out out/evaluation");
+  return {parser, [arguments](const auto& command_line) { RunEvaluate(*arguments, command_line); }};
+}
+
+}  // namespace evo::app

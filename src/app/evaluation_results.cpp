@@ -1,0 +1,56 @@
+#include "app/evaluation_results.hpp"
+
+#include <algorithm>
+
+#include "evo/report/figures.hpp"
+#include "evo/report/gnuplot.hpp"
+#include "evo/report/tables.hpp"
+
+namespace evo::app {
+
+namespace {
+
+/// What tells the files of an alignment apart: nothing for the first one.
+std::string Suffix(std::size_t index, const Alignment& alignment) {
+  if (index == 0) return "";
+  std::string suffix = "_" + alignment.name;
+  std::ranges::replace(suffix, ':', '-');
+  return suffix;
+}
+
+}  // namespace
+
+std::vector<std::string> EvaluationResultNames(std::span<const Alignment> alignments) {
+  std::vector<std::string> names{"summary.csv", "summary.json"};
+  for (std::size_t i = 0; i < alignments.size(); ++i) names.push_back("errors" + Suffix(i, alignments[i]) + ".csv");
+  return names;
+}
+
+void WriteEvaluationResults(const std::filesystem::path& folder, const std::string& sequence,
+                            const Evaluation& evaluation, bool with_plots) {
+  const auto rows = SummaryRows(sequence, evaluation);
+  WriteCsv(folder / "summary.csv", rows);
+  WriteJson(folder / "summary.json", rows);
+  Gnuplot gnuplot(folder / "plots");
+  for (std::size_t i = 0; i < evaluation.alignments.size(); ++i) {
+    const auto& result = evaluation.alignments[i];
+    const std::string suffix = Suffix(i, result.alignment);
+    WriteErrors(folder / ("errors" + suffix + ".csv"), result.errors);
+    if (!with_plots) continue;
+    const std::string trajectory = "trajectory" + suffix;
+    const std::string errors = "errors" + suffix;
+    gnuplot.Draw(trajectory, TrajectoryFigure(trajectory, evaluation, result));
+    gnuplot.Draw(errors, ErrorFigure(errors, evaluation, result));
+  }
+}
+
+std::string SequenceName(const std::filesystem::path& ground_truth) {
+  std::string name = ground_truth.stem().string();
+  if (name == "groundtruth") return std::filesystem::absolute(ground_truth).parent_path().filename().string();
+  for (const std::string ending : {"_gt", "_groundtruth"}) {
+    if (name.ends_with(ending) && name.size() > ending.size()) name.resize(name.size() - ending.size());
+  }
+  return name;
+}
+
+}  // namespace evo::app

@@ -1,0 +1,52 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "app/commands.hpp"
+#include "evo/core/error.hpp"
+
+namespace {
+
+constexpr int kUnexpected = 1;
+
+/// Exactly one line, whatever the message holds.
+int Fail(std::string message, int exit_code) {
+  while (message.ends_with('\n')) message.pop_back();
+  for (char& c : message) {
+    if (c == '\n' || c == '\r') c = ' ';
+  }
+  std::fprintf(stderr, "evo-run: error: %s\n", message.c_str());
+  return exit_code;
+}
+
+int Run(int argc, char** argv) {
+  CLI::App app("Visual odometry from an event camera alone: events in, trajectory out.", "evo-run");
+  app.set_version_flag("--version", "evo-run " EVO_VERSION);
+  app.require_subcommand(1);
+  app.footer("'evo-run COMMAND --help' shows the options of a command and an example.");
+  const std::vector<evo::app::Command> commands{evo::app::AddEvaluateCommand(app), evo::app::AddConfigCommand(app)};
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    return Fail(std::string(error.what()) + "; see evo-run --help", static_cast<int>(evo::ErrorKind::kUsage));
+  }
+  for (const auto& command : commands) {
+    if (command.parser->parsed()) command.run(std::vector<std::string>(argv, argv + argc));
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return Run(argc, argv);
+  } catch (const evo::Error& error) {
+    return Fail(error.what(), error.exit_code());
+  } catch (const std::exception& error) {
+    return Fail(std::string("unexpected: ") + error.what(), kUnexpected);
+  }
+}

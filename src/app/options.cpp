@@ -1,0 +1,39 @@
+#include "app/options.hpp"
+
+#include <map>
+
+#include "evo/core/logging.hpp"
+
+namespace evo::app {
+
+void CommonOptions::Apply(Config* config) const {
+  SetUpLogging(quiet ? -1 : verbose);
+  if (!config_file.empty()) config->parameters.LoadFile(config_file);
+  for (const auto& setting : settings) config->parameters.Set(setting);
+}
+
+void AddConfigurationOptions(CLI::App& command, CommonOptions& options) {
+  command.add_option("--config", options.config_file, "YAML file of parameters; see 'evo-run config --print'")
+      ->type_name("FILE");
+  command.add_option("--set", options.settings, "one parameter, may be repeated; wins over --config")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  auto* const verbose = command.add_flag("-v,--verbose", options.verbose, "say more on stderr");
+  command.add_flag("-q,--quiet", options.quiet, "say nothing on stderr but errors")->excludes(verbose);
+}
+
+void AddRunOptions(CLI::App& command, CommonOptions& options) {
+  command.add_option("--threads", options.threads, "threads to use; 0 means one for each processor")
+      ->check(CLI::Range(0, 1024))
+      ->type_name("N");
+  command.add_flag("--force", options.force, "overwrite earlier results in the --out folder");
+  const std::map<std::string, GroundTruthSource> sources{{"loam", GroundTruthSource::kLoam},
+                                                         {"cartographer", GroundTruthSource::kCartographer}};
+  command
+      .add_option("--ground-truth-source", options.ground_truth_source,
+                  "which trajectory of an MVSEC ground truth file: loam (default) or cartographer")
+      ->transform(CLI::CheckedTransformer(sources).description(""))
+      ->type_name("loam|cartographer");
+}
+
+}  // namespace evo::app

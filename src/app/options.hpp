@@ -1,0 +1,32 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/config.hpp"
+#include "evo/io/trajectory_io.hpp"
+
+namespace evo::app {
+
+/// What every subcommand understands.
+struct CommonOptions {
+  std::string config_file;  ///< empty if none
+  std::vector<std::string> settings;
+  int threads = 0;  ///< 0: one for each processor
+  bool force = false;
+  GroundTruthSource ground_truth_source = GroundTruthSource::kLoam;
+  int verbose = 0;
+  bool quiet = false;
+
+  /// Starts the log and reads the configuration: defaults, then the file, then the settings.
+  void Apply(Config* config) const;
+};
+
+/// --config, --set, -v and -q.
+void AddConfigurationOptions(CLI::App& command, CommonOptions& options);
+/// --threads, --force and --ground-truth-source, for the commands that compute something.
+void AddRunOptions(CLI::App& command, CommonOptions& options);
+
+}  // namespace evo::app

@@ -1,0 +1,27 @@
+#include "app/run_record.hpp"
+
+#include "evo/io/checksum.hpp"
+
+namespace evo::app {
+
+RunRecord::RunRecord(const std::vector<std::string>& command_line, const Parameters& parameters) {
+  manifest.version = EVO_VERSION;
+  manifest.command_line = command_line;
+  manifest.parameters = parameters.Values();
+}
+
+void RunRecord::AddInput(const std::string& role, const std::filesystem::path& path) {
+  const std::string sha256 = Sha256(path);  // reports a file that cannot be read better than file_size does
+  manifest.inputs.push_back({role, path, std::filesystem::file_size(path), sha256});
+}
+
+void RunRecord::AddCount(const std::string& name, std::size_t count) {
+  manifest.counts.emplace_back(name, static_cast<std::int64_t>(count));
+}
+
+RunRecord::Stopwatch::~Stopwatch() {
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  stages.push_back({stage, elapsed.count()});
+}
+
+}  // namespace evo::app

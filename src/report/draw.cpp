@@ -1,0 +1,148 @@
+#include "evo/report/draw.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace evo {
+
+namespace {
+
+constexpr Color kWhite{255, 255, 255};
+
+std::size_t Offset(const Canvas& canvas, int x, int y) {
+  return 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(canvas.width) + static_cast<std::size_t>(x));
+}
+
+/// Blends `color` wherever `distance(point)` to the middle of a stroke is below `half_width`, with a soft edge of 1 px.
+template <typename Distance>
+void Stroke(Canvas* canvas, const Eigen::Array2d& low, const Eigen::Array2d& high, double half_width, Color color,
+            const Distance& distance) {
+  const double margin = half_width + 1.0;
+  const int x0 = static_cast<int>(std::max(0.0, std::floor(low.x() - margin)));
+  const int y0 = static_cast<int>(std::max(0.0, std::floor(low.y() - margin)));
+  const int x1 = static_cast<int>(std::min(canvas->width - 1.0, std::ceil(high.x() + margin)));
+  const int y1 = static_cast<int>(std::min(canvas->height - 1.0, std::ceil(high.y() + margin)));
+  for (int y = y0; y <= y1; ++y) {
+    for (int x = x0; x <= x1; ++x) {
+      const double opacity = half_width + 0.5 - distance(Eigen::Vector2d(x, y));
+      if (opacity > 0.0) canvas->Blend(x, y, color, std::min(1.0, opacity));
+    }
+  }
+}
+
+Color PolarityColor(PolarityColors colors, int polarity) {
+  if (colors == PolarityColors::kRedBlue) return polarity > 0 ? Color{214, 39, 40} : Color{31, 87, 180};
+  return polarity > 0 ? Color{170, 170, 170} : Color{50, 50, 50};
+}
+
+/// The centre of a sensor pixel on a canvas that shows each as zoom x zoom px.
+Eigen::Vector2d Zoomed(double x, double y, int zoom) { return {(x + 0.5) * zoom - 0.5, (y + 0.5) * zoom - 0.5}; }
+
+/// Positions up to `t` of the tracks alive then, newest first.
+std::map<std::int64_t, std::vector<Eigen::Vector2d>> CollectTails(const Tracks& tracks, TimeNs t,
+                                                                  const TrackDrawing& drawing) {
+  std::map<std::int64_t, std::vector<Eigen::Vector2d>> tails;
+  const auto longest = static_cast<std::size_t>(drawing.tail) + 1;
+  std::size_t unfinished = 0;
+  auto observation = std::ranges::upper_bound(tracks, t, {}, &TrackObservation::t);
+  while (observation != tracks.begin()) {
+    --observation;
+    const bool alive = t - observation->t <= drawing.alive;
+    if (!alive && unfinished == 0) break;
+    auto tail = tails.find(observation->id);
+    if (tail == tails.end()) {
+      if (!alive) continue;
+      tail = tails.emplace(observation->id, std::vector<Eigen::Vector2d>()).first;
+      ++unfinished;
+    }
+    if (tail->second.size() == longest) continue;
+    tail->second.push_back(Zoomed(observation->x, observation->y, drawing.zoom));
+    if (tail->second.size() == longest) --unfinished;
+  }
+  return tails;
+}
+
+}  // namespace
+
+Canvas::Canvas(int columns, int rows, Color background) : width(columns), height(rows) {
+  rgb.resize(3 * static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  for (std::size_t i = 0; i < rgb.size(); i += 3) {
+    rgb[i] = background.red;
+    rgb[i + 1] = background.green;
+    rgb[i + 2] = background.blue;
+  }
+}
+
+Color Canvas::At(int x, int y) const {
+  const std::size_t i = Offset(*this, x, y);
+  return {rgb[i], rgb[i + 1], rgb[i + 2]};
+}
+
+void Canvas::Blend(int x, int y, Color color, double opacity) {
+  if (x < 0 || y < 0 || x >= width || y >= height) return;
+  const std::size_t i = Offset(*this, x, y);
+  const auto mix = [&](std::uint8_t under, std::uint8_t over) {
+    return static_cast<std::uint8_t>(std::lround((1.0 - opacity) * under + opacity * over));
+  };
+  rgb[i] = mix(rgb[i], color.red);
+  rgb[i + 1] = mix(rgb[i + 1], color.green);
+  rgb[i + 2] = mix(rgb[i + 2], color.blue);
+}
+
+void DrawLine(Canvas* canvas, const Eigen::Vector2d& a, const Eigen::Vector2d& b, Color color, double thickness) {
+  const Eigen::Vector2d along = b - a;
+  const double length2 = along.squaredNorm();
+  Stroke(canvas, a.array().min(b.array()), a.array().max(b.array()), 0.5 * thickness, color,
+         [&](const Eigen::Vector2d& point) {
+           const double s = length2 > 0.0 ? std::clamp((point - a).dot(along) / length2, 0.0, 1.0) : 0.0;
+           return (point - a - s * along).norm();
+         });
+}
+
+void DrawCircle(Canvas* canvas, const Eigen::Vector2d& center, double radius, Color color, double thickness) {
+  Stroke(canvas, center.array() - radius, center.array() + radius, 0.5 * thickness, color,
+         [&](const Eigen::Vector2d& point) { return std::abs((point - center).norm() - radius); });
+}
+
+void DrawDisc(Canvas* canvas, const Eigen::Vector2d& center, double radius, Color color) {
+  Stroke(canvas, center.array(), center.array(), radius, color,
+         [&](const Eigen::Vector2d& point) { return (point - center).norm(); });
+}
+
+Canvas DrawEvents(const EventColumns& events, int width, int height, PolarityColors colors, int zoom) {
+  Canvas canvas(width * zoom, height * zoom, kWhite);
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    if (events.x[i] >= width || events.y[i] >= height) continue;
+    const Color color = PolarityColor(colors, events.polarity[i]);
+    for (int row = 0; row < zoom; ++row) {
+      for (int column = 0; column < zoom; ++column) {
+        canvas.Blend(events.x[i] * zoom + column, events.y[i] * zoom + row, color);
+      }
+    }
+  }
+  return canvas;
+}
+
+Color TrackColor(std::int64_t id) {
+  // Steps of the golden ratio around the circle of hues keep the colours of successive ids far apart.
+  constexpr double kGolden = 0.6180339887498949;
+  const double hue = 6.0 * std::fmod(static_cast<double>(id) * kGolden, 1.0);
+  const auto channel = [&](double shift) {
+    const double h = std::fmod(hue + shift, 6.0);
+    const double share = std::clamp(std::abs(h - 3.0) - 1.0, 0.0, 1.0);
+    return static_cast<std::uint8_t>(std::lround(200.0 * share));
+  };
+  return {channel(0.0), channel(4.0), channel(2.0)};
+}
+
+void DrawTracks(Canvas* canvas, const Tracks& tracks, TimeNs t, const TrackDrawing& drawing) {
+  const double zoom = drawing.zoom;
+  for (const auto& [id, tail] : CollectTails(tracks, t, drawing)) {
+    const Color color = TrackColor(id);
+    for (std::size_t i = 1; i < tail.size(); ++i) DrawLine(canvas, tail[i - 1], tail[i], color, 0.5 + 0.5 * zoom);
+    DrawDisc(canvas, tail.front(), 1.0 + 0.5 * zoom, color);
+  }
+}
+
+}  // namespace evo

@@ -1,0 +1,188 @@
+#include "evo/report/tables.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "evo/core/output_file.hpp"
+
+namespace evo {
+
+namespace {
+
+/// Fixed point: a table whose columns line up by eye and that any reader parses; a nanometre is the last digit.
+std::string Format(double value) {
+  if (!std::isfinite(value)) return "";
+  char buffer[400];  // the longest double in fixed point has 309 digits before the point
+  std::snprintf(buffer, sizeof buffer, "%.9f", value);
+  return std::strcmp(buffer, "-0.000000000") == 0 ? buffer + 1 : buffer;
+}
+
+/// A cell of a CSV file: quoted where it must be (RFC 4180).
+std::string Cell(const std::variant<std::string, std::int64_t, double>& value) {
+  if (const auto* number = std::get_if<double>(&value)) return Format(*number);
+  if (const auto* count = std::get_if<std::int64_t>(&value)) return std::to_string(*count);
+  const auto& text = std::get<std::string>(value);
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
+TableRow SummaryRow(const std::string& sequence, const Evaluation& evaluation, const AlignedEvaluation& result) {
+  TableRow row{{"sequence", sequence},
+               {"alignment", result.alignment.name},
+               {"scale", result.similarity.scale},
+               {"poses", static_cast<std::int64_t>(result.errors.size())},
+               {"coverage", evaluation.coverage},
+               {"gaps", evaluation.gaps},
+               {"path_m", evaluation.path_m}};
+  const std::pair<const char*, const ErrorSummary&> components[] = {{"longitudinal", result.longitudinal},
+                                                                    {"lateral", result.lateral},
+                                                                    {"vertical", result.vertical},
+                                                                    {"planar", result.planar}};
+  const auto add = [&](const std::string& unit, double factor) {
+    for (const auto& [name, summary] : components) {
+      // A length has no sign, so its mean needs no "abs".
+      const std::string mean = std::string(name) == "planar" ? "mean_" : "mean_abs_";
+      row.emplace_back(mean + name + unit, factor * summary.mean_abs);
+    }
+    for (const auto& [name, summary] : components) {
+      row.emplace_back(std::string("rmse_") + name + unit, factor * summary.rmse);
+    }
+    for (const auto& [name, summary] : components) {
+      row.emplace_back(std::string("max_") + name + unit, factor * summary.max_abs);
+    }
+    for (const auto& [name, summary] : components) {
+      row.emplace_back(std::string("final_") + name + unit, factor * summary.final);
+    }
+  };
+  add("_m", 1.0);
+  add("_percent", evaluation.path_m > 0.0 ? 100.0 / evaluation.path_m : std::numeric_limits<double>::quiet_NaN());
+  const auto& ape = result.ape;
+  for (const auto& [name, value] : {std::pair{"ape_rmse_m", ape.rmse},
+                                    {"ape_mean_m", ape.mean},
+                                    {"ape_median_m", ape.median},
+                                    {"ape_std_m", ape.standard_deviation},
+                                    {"ape_min_m", ape.min},
+                                    {"ape_max_m", ape.max},
+                                    {"ape_sse_m2", ape.sse},
+                                    {"ape_rotation_rmse_deg", result.rotation_deg.rmse},
+                                    {"ape_rotation_mean_deg", result.rotation_deg.mean},
+                                    {"ape_rotation_max_deg", result.rotation_deg.max}}) {
+    row.emplace_back(name, value);
+  }
+  return row;
+}
+
+/// One line of the terminal's table, every cell as wide as `width` allows.
+void AppendLine(std::string* table, const std::vector<std::string>& cells) {
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    char buffer[64];
+    std::snprintf(buffer, sizeof buffer, i == 0 ? "%-14s" : "%11s", cells[i].c_str());
+    *table += buffer;
+  }
+  *table += '\n';
+}
+
+std::string Short(double value, int decimals) {
+  char buffer[64];
+  std::snprintf(buffer, sizeof buffer, "%.*f", decimals, value);
+  return buffer;
+}
+
+}  // namespace
+
+std::vector<TableRow> SummaryRows(const std::string& sequence, const Evaluation& evaluation) {
+  std::vector<TableRow> rows;
+  for (const auto& result : evaluation.alignments) rows.push_back(SummaryRow(sequence, evaluation, result));
+  return rows;
+}
+
+void WriteCsv(const std::filesystem::path& path, const std::vector<TableRow>& rows) {
+  OutputFile file(path);
+  auto& out = file.stream();
+  if (!rows.empty()) {
+    for (std::size_t i = 0; i < rows[0].size(); ++i) out << (i ? "," : "") << rows[0][i].first;
+    out << '\n';
+  }
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) out << (i ? "," : "") << Cell(row[i].second);
+    out << '\n';
+  }
+  file.Commit();
+}
+
+void WriteJson(const std::filesystem::path& path, const std::vector<TableRow>& rows) {
+  auto array = nlohmann::ordered_json::array();
+  for (const auto& row : rows) {
+    nlohmann::ordered_json object;
+    for (const auto& [name, value] : row) std::visit([&, &key = name](const auto& v) { object[key] = v; }, value);
+    array.push_back(std::move(object));
+  }
+  OutputFile file(path);
+  // Names come from file names, which need not be UTF-8.
+  file.stream() << array.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+  file.Commit();
+}
+
+void WriteErrors(const std::filesystem::path& path, const std::vector<PoseError>& errors) {
+  OutputFile file(path);
+  auto& out = file.stream();
+  out << "stamp,distance,longitudinal,lateral,vertical,planar,translation,rotation_deg\n";
+  for (const auto& error : errors) {
+    const auto& driving = error.driving;
+    out << FormatTime(error.stamp);
+    for (const double value : {error.distance, driving.longitudinal, driving.lateral, driving.vertical, driving.planar,
+                               error.translation, error.rotation_deg}) {
+      out << ',' << Format(value);
+    }
+    out << '\n';
+  }
+  file.Commit();
+}
+
+void WriteLifetimes(const std::filesystem::path& path, const LifetimeStatistics& statistics) {
+  OutputFile file(path);
+  auto& out = file.stream();
+  out << "quantity,unit,bin_low,bin_high,value\n"
+      << "frames,count,,," << statistics.frames << '\n'
+      << "tracks,count,,," << statistics.tracks << '\n'
+      << "tracks_too_short,count,,," << statistics.tracks_too_short << '\n'
+      << "tracks_cut_short,count,,," << statistics.tracks_cut_short << '\n';
+  const auto write_moments = [&](const LifetimeMoments& moments, const char* unit) {
+    out << "mean," << unit << ",,," << Format(moments.mean) << '\n'
+        << "standard_deviation," << unit << ",,," << Format(moments.standard_deviation) << '\n'
+        << "median," << unit << ",,," << Format(moments.median) << '\n'
+        << "max," << unit << ",,," << Format(moments.max) << '\n';
+  };
+  write_moments(statistics.in_frames, "frames");
+  write_moments(statistics.in_seconds, "s");
+  for (const auto& bin : statistics.histogram) {
+    out << "histogram,tracks," << bin.low << ',' << bin.high << ',' << bin.tracks << '\n';
+  }
+  file.Commit();
+}
+
+std::string FormatSummary(const Evaluation& evaluation) {
+  std::string table;
+  table += "path " + Short(evaluation.path_m, 2) + " m, " + Short(ToSeconds(evaluation.to - evaluation.from), 2) +
+           " s, coverage " + Short(100.0 * evaluation.coverage, 1) + " %, gaps " + std::to_string(evaluation.gaps) +
+           "\n";
+  AppendLine(&table, {"alignment", "scale", "poses", "longitud.", "lateral", "planar", "planar", "planar max",
+                      "planar end", "APE rmse"});
+  AppendLine(&table, {"", "", "", "mean m", "mean m", "mean m", "mean %", "m", "m", "m"});
+  const double percent = 100.0 / evaluation.path_m;
+  for (const auto& result : evaluation.alignments) {
+    AppendLine(&table, {result.alignment.name, Short(result.similarity.scale, 5), std::to_string(result.errors.size()),
+                        Short(result.longitudinal.mean_abs, 4), Short(result.lateral.mean_abs, 4),
+                        Short(result.planar.mean_abs, 4),
+                        evaluation.path_m > 0.0 ? Short(percent * result.planar.mean_abs, 4) : "-",
+                        Short(result.planar.max_abs, 4), Short(result.planar.final, 4), Short(result.ape.rmse, 4)});
+  }
+  return table;
+}
+
+}  // namespace evo

@@ -1,0 +1,144 @@
+#include "evo/evaluation/alignment.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "evo/core/error.hpp"
+#include "evo/evaluation/evaluation.hpp"
+#include "reference.hpp"
+
+namespace evo {
+namespace {
+
+/// A pose a tenth of a second along a smooth curve in space.
+Trajectory Curve(int poses) {
+  Trajectory trajectory;
+  for (int i = 0; i < poses; ++i) {
+    const double s = 0.1 * i;
+    trajectory.push_back({FromSeconds(s), SE3(so3::Exp({0.1 * s, 0.3 * std::sin(s), -0.05 * s}),
+                                              {3.0 * s, std::sin(0.7 * s), 0.2 * s * s})});
+  }
+  return trajectory;
+}
+
+Trajectory Noisy(Trajectory trajectory, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0.0, 0.1);
+  for (auto& pose : trajectory) {
+    const Eigen::Vector3d shift(noise(random), noise(random), noise(random));
+    pose.T_world_cam = SE3(pose.T_world_cam.rotation(), pose.T_world_cam.translation() + shift);
+  }
+  return trajectory;
+}
+
+Trajectory Moved(Trajectory trajectory, const Similarity& similarity) {
+  for (auto& pose : trajectory) pose.T_world_cam = similarity * pose.T_world_cam;
+  return trajectory;
+}
+
+double Rmse(const Trajectory& truth, const Trajectory& estimate, const char* alignment) {
+  return Evaluate(truth, estimate, std::vector{ParseAlignment(alignment)}, {}, {}).alignments.front().ape.rmse;
+}
+
+const Similarity kRigid{1.0, SE3(so3::Exp({0.4, -1.2, 2.0}), {100.0, -20.0, 3.0})};
+const Similarity kSimilar{0.3, SE3(so3::Exp({0.4, -1.2, 2.0}), {100.0, -20.0, 3.0})};
+
+TEST(Alignment, FindsTheMotionThatWasApplied) {
+  const auto truth = Curve(80);
+  for (const char* name : {"sim3", "origin-scale", "first:2.5"}) {
+    EXPECT_LT(Rmse(truth, Moved(truth, kSimilar), name), 1e-9) << name;
+    const auto pairs = Associate(truth, Moved(truth, kSimilar), {});
+    EXPECT_NEAR(Align(pairs, ParseAlignment(name)).scale, 1.0 / 0.3, 1e-9) << name;
+  }
+  for (const char* name : {"se3", "origin"}) EXPECT_LT(Rmse(truth, Moved(truth, kRigid), name), 1e-9) << name;
+  EXPECT_GT(Rmse(truth, Moved(truth, kRigid), "none"), 1.0);
+}
+
+TEST(Alignment, ErrorsDoNotDependOnTheEstimatesWorldFrame) {
+  const auto truth = Curve(80);
+  const auto estimate = Noisy(truth, 1);
+  for (const char* name : {"se3", "sim3", "origin", "origin-scale", "first:3"}) {
+    EXPECT_NEAR(Rmse(truth, Moved(estimate, kRigid), name), Rmse(truth, estimate, name), 1e-9) << name;
+  }
+  for (const char* name : {"sim3", "origin-scale", "first:3"}) {
+    EXPECT_NEAR(Rmse(truth, Moved(estimate, kSimilar), name), Rmse(truth, estimate, name), 1e-9) << name;
+  }
+}
+
+TEST(Alignment, MoreFreedomNeverFitsWorse) {
+  const auto truth = Curve(80);
+  const auto estimate = Moved(Noisy(truth, 2), {0.95, SE3(so3::Exp({0, 0.02, 0}), {0.5, 0, 0})});
+  const double sim3 = Rmse(truth, estimate, "sim3");
+  EXPECT_LE(sim3, Rmse(truth, estimate, "se3"));
+  EXPECT_LE(Rmse(truth, estimate, "se3"), Rmse(truth, estimate, "origin"));
+  EXPECT_LE(sim3, Rmse(truth, estimate, "origin-scale"));
+  EXPECT_LE(Rmse(truth, estimate, "origin-scale"), Rmse(truth, estimate, "origin"));
+}
+
+TEST(Alignment, OriginScaleKeepsTheFirstPoseOnTheTruth) {
+  const auto truth = Curve(60);
+  const auto result =
+      Evaluate(truth, Moved(Noisy(truth, 3), kSimilar), std::vector{ParseAlignment("origin-scale")}, {}, {})
+          .alignments.front();
+  EXPECT_NEAR(result.errors.front().translation, 0.0, 1e-9);
+  EXPECT_NEAR(result.errors.front().rotation_deg, 0.0, 1e-6);
+  EXPECT_GT(result.errors.back().translation, 0.0);
+}
+
+TEST(Alignment, ReflectionIsNeverUsed) {
+  const auto truth = Curve(60);
+  auto mirrored = truth;
+  for (auto& pose : mirrored) {
+    const Eigen::Vector3d p = pose.T_world_cam.translation();
+    pose.T_world_cam = SE3(pose.T_world_cam.rotation(), {p.x(), -p.y(), p.z()});
+  }
+  const auto pairs = Associate(truth, mirrored, {});
+  EXPECT_NEAR(Align(pairs, ParseAlignment("se3")).T_truth_estimate.RotationMatrix().determinant(), 1.0, 1e-12);
+  EXPECT_GT(Rmse(truth, mirrored, "se3"), 0.1);
+}
+
+ErrorKind Refusal(const Trajectory& truth, const Trajectory& estimate, const char* alignment) {
+  try {
+    Rmse(truth, estimate, alignment);
+  } catch (const Error& error) {
+    return error.kind();
+  }
+  ADD_FAILURE() << "accepted " << alignment;
+  return ErrorKind::kUsage;
+}
+
+TEST(Alignment, RefusesWhatThePosesDoNotDetermine) {
+  for (const char* file : {"line.txt", "still.txt", "two.txt"}) {
+    const auto trajectory = ReadReferenceTrajectory(file);
+    for (const char* alignment : {"se3", "sim3", "first:1"}) {
+      EXPECT_EQ(Refusal(trajectory, trajectory, alignment), ErrorKind::kDegenerateAlignment) << file << alignment;
+    }
+    EXPECT_NEAR(Rmse(trajectory, trajectory, "origin"), 0.0, 1e-12);
+  }
+  const auto still = ReadReferenceTrajectory("still.txt");
+  EXPECT_EQ(Refusal(still, still, "origin-scale"), ErrorKind::kDegenerateAlignment);
+  const auto line = ReadReferenceTrajectory("line.txt");
+  EXPECT_NEAR(Rmse(line, line, "origin-scale"), 0.0, 1e-12);
+  EXPECT_EQ(Refusal(line, Moved(line, {-1.0, SE3()}), "origin-scale"), ErrorKind::kDegenerateAlignment);
+}
+
+TEST(Alignment, NoOverlapIsNothingToDo) {
+  const auto truth = ReadReferenceTrajectory("gt.txt");
+  EXPECT_EQ(Refusal(truth, ReadReferenceTrajectory("nooverlap.txt"), "se3"), ErrorKind::kNothingToDo);
+  EXPECT_EQ(Refusal(truth, {}, "none"), ErrorKind::kNothingToDo);
+  EXPECT_EQ(Refusal({}, truth, "none"), ErrorKind::kNothingToDo);
+}
+
+TEST(Alignment, ReadsNames) {
+  const auto alignments = ParseAlignments("none,first:2.5,sim3,none");
+  ASSERT_EQ(alignments.size(), 3u);
+  EXPECT_EQ(alignments[1].kind, Alignment::Kind::kFirst);
+  EXPECT_DOUBLE_EQ(alignments[1].seconds, 2.5);
+  for (const char* text : {"", "umeyama", "first:", "first:0", "first:-1", "first:nan", "first:2s", "sim3,,se3"}) {
+    EXPECT_THROW(ParseAlignments(text), Error) << text;
+  }
+}
+
+}  // namespace
+}  // namespace evo

@@ -1,0 +1,149 @@
+#include "evo/evaluation/driving.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "evo/evaluation/evaluation.hpp"
+
+namespace evo {
+namespace {
+
+constexpr TimeNs kStep = 50'000'000;
+
+/// The MVSEC world: x right, y down, z forward; the camera looks along z.
+Trajectory Along(const std::vector<Eigen::Vector3d>& positions) {
+  Trajectory trajectory;
+  for (const auto& p : positions) {
+    trajectory.push_back({static_cast<TimeNs>(trajectory.size()) * kStep, SE3({1, 0, 0, 0}, p)});
+  }
+  return trajectory;
+}
+
+Trajectory StraightAhead(int poses, double step) {
+  std::vector<Eigen::Vector3d> positions;
+  for (int i = 0; i < poses; ++i) positions.push_back({0, 0, step * i});
+  return Along(positions);
+}
+
+TEST(UpDirection, FollowsTheCameraInEveryWorld) {
+  const auto camera_world = StraightAhead(3, 1.0);
+  EXPECT_EQ(UpDirection("auto", camera_world), -Eigen::Vector3d::UnitY());
+  Trajectory surveyed;  // z up, the camera looks along x, tilted by 20 degrees
+  Eigen::Matrix3d axes;
+  axes << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  const Eigen::Quaterniond tilt = so3::Exp({20.0 * std::numbers::pi / 180.0, 0, 0});
+  surveyed.push_back({0, SE3(Eigen::Quaterniond(axes) * tilt, Eigen::Vector3d::Zero())});
+  EXPECT_EQ(UpDirection("auto", surveyed), Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(UpDirection("-x", surveyed), -Eigen::Vector3d::UnitX());
+  EXPECT_EQ(UpDirection("y", surveyed), Eigen::Vector3d::UnitY());
+}
+
+TEST(DrivingFrame, NamesErrorsAsTheDriverWould) {
+  const auto truth = StraightAhead(21, 0.5);
+  DrivingFrame frame(truth, UpDirection("auto", truth), 1.0);
+  const Eigen::Vector3d at = truth[10].T_world_cam.translation();
+  // Ahead is z, left is -x, up is -y.
+  const auto error = frame.Split(truth[10].t, at, at + Eigen::Vector3d(-0.3, -0.2, 0.4));
+  EXPECT_NEAR(error.longitudinal, 0.4, 1e-12);
+  EXPECT_NEAR(error.lateral, 0.3, 1e-12);
+  EXPECT_NEAR(error.vertical, 0.2, 1e-12);
+  EXPECT_NEAR(error.planar, 0.5, 1e-12);
+}
+
+TEST(DrivingFrame, DirectionIsThatOfTravelNotOfView) {
+  std::vector<Eigen::Vector3d> positions;  // the camera looks along z but slides to the right
+  for (int i = 0; i < 20; ++i) positions.push_back({0.3 * i, 0, 0});
+  const auto truth = Along(positions);
+  DrivingFrame frame(truth, -Eigen::Vector3d::UnitY(), 1.0);
+  const Eigen::Vector3d at = positions[7];
+  EXPECT_NEAR(frame.Split(truth[7].t, at, at + Eigen::Vector3d(1, 0, 0)).longitudinal, 1.0, 1e-12);
+}
+
+TEST(DrivingFrame, HeadingIsHeldThroughATremblingStop) {
+  std::vector<Eigen::Vector3d> positions;
+  for (int i = 0; i < 10; ++i) positions.push_back({0, 0, 0.5 * i});
+  for (int i = 0; i < 100; ++i) positions.push_back({0.01 * std::sin(3.0 * i), 0, 4.5 + 0.01 * std::cos(5.0 * i)});
+  const auto truth = Along(positions);
+  DrivingFrame frame(truth, -Eigen::Vector3d::UnitY(), 1.0);
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const Eigen::Vector3d at = truth[i].T_world_cam.translation();
+    EXPECT_NEAR(frame.Split(truth[i].t, at, at + Eigen::Vector3d(0, 0, 1)).longitudinal, 1.0, 1e-3) << i;
+  }
+}
+
+TEST(DrivingFrame, StandingStillFallsBackOnTheViewDirection) {
+  const auto truth = StraightAhead(5, 0.0);
+  DrivingFrame frame(truth, -Eigen::Vector3d::UnitY(), 1.0);
+  const auto error = frame.Split(truth[2].t, {0, 0, 0}, {0.2, 0, 1.0});
+  EXPECT_NEAR(error.longitudinal, 1.0, 1e-12);
+  EXPECT_NEAR(error.lateral, -0.2, 1e-12);
+}
+
+TEST(DrivingFrame, LooksDownAndStandsStill) {
+  Trajectory truth{{0, SE3(so3::Exp({-std::numbers::pi / 2, 0, 0}), Eigen::Vector3d::Zero())}};
+  const Eigen::Vector3d up = truth[0].T_world_cam.rotation() * -Eigen::Vector3d::UnitZ();
+  DrivingFrame frame(truth, up, 1.0);
+  const auto error = frame.Split(0, {0, 0, 0}, {0.3, 0.2, 0.4});
+  EXPECT_NEAR(std::hypot(error.longitudinal, error.lateral), error.planar, 1e-12);
+  EXPECT_GT(error.planar, 0.0);
+}
+
+TEST(Evaluation, CountsPathCoverageAndGaps) {
+  const auto truth = StraightAhead(201, 0.5);  // 10 s, 100 m
+  Trajectory estimate;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const double t = ToSeconds(truth[i].t);
+    if (t >= 2.0 && (t <= 5.0 || t >= 6.0)) estimate.push_back(truth[i]);
+  }
+  const auto evaluation = Evaluate(truth, estimate, std::vector{ParseAlignment("none")}, {}, {});
+  EXPECT_EQ(evaluation.gaps, 2);  // before 2 s and from 5 s to 6 s
+  EXPECT_NEAR(evaluation.coverage, 0.7, 1e-12);
+  EXPECT_NEAR(evaluation.path_m, 80.0, 1e-9);
+  const auto& errors = evaluation.alignments.front().errors;
+  EXPECT_NEAR(errors.back().distance, 80.0, 1e-9);
+  EXPECT_NEAR(errors.front().seconds, 2.0, 1e-12);
+
+  const EvaluationInterval interval{4 * kNsPerSecond, 8 * kNsPerSecond};
+  const auto part = Evaluate(truth, estimate, std::vector{ParseAlignment("none")}, interval, {});
+  EXPECT_EQ(part.gaps, 1);
+  EXPECT_NEAR(part.coverage, 0.75, 1e-12);
+  EXPECT_NEAR(part.path_m, 40.0, 1e-9);
+}
+
+TEST(Evaluation, SignedErrorsAndTheirSummary) {
+  const auto truth = StraightAhead(101, 0.5);
+  Trajectory estimate = truth;
+  for (auto& pose : estimate) {
+    const Eigen::Vector3d p = pose.T_world_cam.translation();
+    pose.T_world_cam = SE3(pose.T_world_cam.rotation(), {0.01 * p.z(), 0, 0.98 * p.z()});
+  }
+  const auto evaluation = Evaluate(truth, estimate, std::vector{ParseAlignment("none")}, {}, {});
+  const auto& result = evaluation.alignments.front();
+  EXPECT_NEAR(result.longitudinal.final, -1.0, 1e-9);  // 2 % short of 50 m
+  EXPECT_NEAR(result.lateral.final, -0.5, 1e-9);       // to the right
+  EXPECT_NEAR(result.longitudinal.mean_abs, 0.5, 1e-9);
+  EXPECT_NEAR(result.longitudinal.max_abs, 1.0, 1e-9);
+  EXPECT_NEAR(result.planar.final, std::hypot(1.0, 0.5), 1e-9);
+  EXPECT_NEAR(result.vertical.rmse, 0.0, 1e-12);
+}
+
+TEST(Evaluation, RotationErrorIsAnAngle) {
+  const auto truth = StraightAhead(11, 0.5);
+  Trajectory estimate = truth;
+  for (auto& pose : estimate) {
+    pose.T_world_cam = SE3(so3::Exp({0, 0.1, 0}) * pose.T_world_cam.rotation(), pose.T_world_cam.translation());
+  }
+  const auto result = Evaluate(truth, estimate, std::vector{ParseAlignment("none")}, {}, {}).alignments.front();
+  EXPECT_NEAR(result.rotation_deg.mean, 0.1 * 180.0 / std::numbers::pi, 1e-9);
+  EXPECT_NEAR(result.ape.max, 0.0, 1e-12);
+}
+
+TEST(Statistics, OfNothingAreNotNumbers) {
+  EXPECT_EQ(ComputeStatistics({}).count, 0);
+  EXPECT_TRUE(std::isnan(ComputeStatistics({}).rmse));
+}
+
+}  // namespace
+}  // namespace evo

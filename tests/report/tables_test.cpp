@@ -1,0 +1,149 @@
+#include "evo/report/tables.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "evo/core/error.hpp"
+#include "evo/report/manifest.hpp"
+#include "fixtures.hpp"
+
+namespace evo {
+namespace {
+
+using TablesTest = ReportTest;
+
+TEST_F(TablesTest, ErrorsHaveARowAPose) {
+  const auto evaluation = SampleEvaluation();
+  WriteErrors(folder / "errors.csv", evaluation.alignments[0].errors);
+  std::istringstream lines(ReadFile(folder / "errors.csv"));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line, "stamp,distance,longitudinal,lateral,vertical,planar,translation,rotation_deg");
+  std::getline(lines, line);
+  EXPECT_EQ(line, "0.000000000,0.000000000,0.000000000,0.000000000,0.000000000,0.000000000,0.000000000,0.000000000");
+  std::string last;
+  int rows = 1;
+  for (; std::getline(lines, line); ++rows) last = line;
+  EXPECT_EQ(rows, 182);
+  EXPECT_EQ(last,
+            "10.000000000,100.000000000,-2.000000000,0.000000000,0.000000000,2.000000000,2.000000000,0.000000000");
+}
+
+TEST_F(TablesTest, SummaryColumnsStayWhatTheyAre) {
+  WriteCsv(folder / "summary.csv", SummaryRows("drive, \"day\"", SampleEvaluation()));
+  const std::string csv = ReadFile(folder / "summary.csv");
+  EXPECT_TRUE(csv.starts_with(
+      "sequence,alignment,scale,poses,coverage,gaps,path_m,mean_abs_longitudinal_m,mean_abs_lateral_m,"
+      "mean_abs_vertical_m,mean_planar_m,rmse_longitudinal_m,rmse_lateral_m,rmse_vertical_m,rmse_planar_m,"
+      "max_longitudinal_m,max_lateral_m,max_vertical_m,max_planar_m,final_longitudinal_m,final_lateral_m,"
+      "final_vertical_m,final_planar_m,mean_abs_longitudinal_percent,mean_abs_lateral_percent,"
+      "mean_abs_vertical_percent,mean_planar_percent,rmse_longitudinal_percent,rmse_lateral_percent,"
+      "rmse_vertical_percent,rmse_planar_percent,max_longitudinal_percent,max_lateral_percent,max_vertical_percent,"
+      "max_planar_percent,final_longitudinal_percent,final_lateral_percent,final_vertical_percent,"
+      "final_planar_percent,ape_rmse_m,ape_mean_m,ape_median_m,ape_std_m,ape_min_m,ape_max_m,ape_sse_m2,"
+      "ape_rotation_rmse_deg,ape_rotation_mean_deg,ape_rotation_max_deg\n"))
+      << csv;
+  EXPECT_NE(csv.find("\n\"drive, \"\"day\"\"\",none,1.000000000,182,0.900000000,1,100.000000000,"), std::string::npos)
+      << csv;
+  EXPECT_NE(csv.find("\n\"drive, \"\"day\"\"\",origin,"), std::string::npos) << csv;
+}
+
+TEST_F(TablesTest, JsonSaysTheSameAsCsv) {
+  const auto rows = SummaryRows("day", SampleEvaluation());
+  WriteJson(folder / "summary.json", rows);
+  const auto json = nlohmann::json::parse(ReadFile(folder / "summary.json"));
+  ASSERT_EQ(json.size(), 2u);
+  EXPECT_EQ(json[0]["sequence"], "day");
+  EXPECT_EQ(json[1]["alignment"], "origin");
+  EXPECT_EQ(json[0]["poses"], 182);
+  EXPECT_NEAR(json[0]["final_longitudinal_m"].get<double>(), -2.0, 1e-12);
+  EXPECT_NEAR(json[0]["max_planar_percent"].get<double>(), 2.0, 1e-12);
+  EXPECT_EQ(json[0].size(), rows[0].size());
+}
+
+TEST_F(TablesTest, NoPathLeavesPercentagesEmpty) {
+  Trajectory still;
+  for (int i = 0; i < 5; ++i) still.push_back({i * kNsPerSecond / 10, SE3()});
+  const auto rows = SummaryRows("still", Evaluate(still, still, ParseAlignments("none"), {}, EvaluationOptions()));
+  WriteCsv(folder / "summary.csv", rows);
+  EXPECT_NE(ReadFile(folder / "summary.csv").find(",,,,"), std::string::npos);
+  WriteJson(folder / "summary.json", rows);
+  EXPECT_TRUE(nlohmann::json::parse(ReadFile(folder / "summary.json"))[0]["mean_planar_percent"].is_null());
+}
+
+TEST_F(TablesTest, LifetimesAreOneTable) {
+  LifetimeStatistics statistics;
+  statistics.frames = 480;
+  statistics.tracks = 2;
+  statistics.in_frames = {4.0, 1.0, 4.0, 5.0};
+  statistics.in_seconds = {0.1, 0.025, 0.1, 0.125};
+  statistics.histogram = {{3, 4, 1}, {4, 5, 0}, {5, 6, 1}};
+  WriteLifetimes(folder / "lifetime.csv", statistics);
+  EXPECT_EQ(ReadFile(folder / "lifetime.csv"),
+            "quantity,unit,bin_low,bin_high,value\n"
+            "frames,count,,,480\n"
+            "tracks,count,,,2\n"
+            "tracks_too_short,count,,,0\n"
+            "tracks_cut_short,count,,,0\n"
+            "mean,frames,,,4.000000000\n"
+            "standard_deviation,frames,,,1.000000000\n"
+            "median,frames,,,4.000000000\n"
+            "max,frames,,,5.000000000\n"
+            "mean,s,,,0.100000000\n"
+            "standard_deviation,s,,,0.025000000\n"
+            "median,s,,,0.100000000\n"
+            "max,s,,,0.125000000\n"
+            "histogram,tracks,3,4,1\n"
+            "histogram,tracks,4,5,0\n"
+            "histogram,tracks,5,6,1\n");
+}
+
+TEST_F(TablesTest, TerminalTableLinesUp) {
+  std::istringstream lines(FormatSummary(SampleEvaluation()));
+  std::vector<std::string> table;
+  for (std::string line; std::getline(lines, line);) table.push_back(line);
+  ASSERT_EQ(table.size(), 5u);
+  EXPECT_EQ(table[0], "path 100.00 m, 10.00 s, coverage 90.0 %, gaps 1");
+  for (std::size_t i = 2; i < table.size(); ++i) EXPECT_EQ(table[i].size(), table[1].size());
+  EXPECT_TRUE(table[4].starts_with("origin "));
+}
+
+TEST_F(TablesTest, ManifestHoldsWhatWasRun) {
+  Manifest manifest;
+  manifest.version = "1.2.3";
+  manifest.command_line = {"evo-run", "evaluate"};
+  manifest.parameters = {{"evaluation.up", "auto"}, {"evaluation.chord_m", "1.5"}, {"odometry.refine", "true"}};
+  manifest.inputs = {{"estimate", "x.txt", 12, "abc"}};
+  manifest.counts = {{"poses", 7}};
+  manifest.stages = {{"evaluate", 0.5}};
+  manifest.rebootstraps = {1'500'000'000};
+  WriteManifest(folder / "manifest.json", manifest);
+  const auto json = nlohmann::json::parse(ReadFile(folder / "manifest.json"));
+  EXPECT_EQ(json["tool"], "evo-run");
+  EXPECT_EQ(json["version"], "1.2.3");
+  EXPECT_EQ(json["command_line"].size(), 2u);
+  EXPECT_EQ(json["parameters"]["evaluation"]["up"], "auto");
+  EXPECT_EQ(json["parameters"]["evaluation"]["chord_m"], 1.5);
+  EXPECT_EQ(json["parameters"]["odometry"]["refine"], true);
+  EXPECT_EQ(json["inputs"][0]["bytes"], 12);
+  EXPECT_EQ(json["inputs"][0]["sha256"], "abc");
+  EXPECT_EQ(json["counts"]["poses"], 7);
+  EXPECT_EQ(json["wall_time_s"]["evaluate"], 0.5);
+  EXPECT_EQ(json["rebootstraps"][0], "1.500000000");
+  EXPECT_GT(json["peak_memory_mb"].get<double>(), 1.0);
+}
+
+TEST_F(TablesTest, CannotWriteIsAnOutputError) {
+  std::ofstream(folder / "file") << "x";
+  try {
+    WriteErrors(folder / "file" / "errors.csv", {});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::kOutput);
+  }
+}
+
+}  // namespace
+}  // namespace evo

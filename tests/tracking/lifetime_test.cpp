@@ -1,0 +1,91 @@
+#include "evo/tracking/lifetime.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+namespace evo {
+namespace {
+
+constexpr TimeNs kFrame = 25'000'000;
+
+std::vector<TimeNs> FrameStamps(int count) {
+  std::vector<TimeNs> stamps;
+  for (int i = 0; i < count; ++i) stamps.push_back(i * kFrame);
+  return stamps;
+}
+
+void Append(Tracks* tracks, std::int64_t id, int first_frame, int frames) {
+  for (int i = 0; i < frames; ++i) tracks->push_back({id, (first_frame + i) * kFrame, 1.0 * i, 2.0});
+}
+
+Tracks Sorted(Tracks tracks) {
+  std::ranges::sort(tracks, {}, [](const TrackObservation& o) { return std::tuple(o.t, o.id); });
+  return tracks;
+}
+
+TEST(Lifetime, CountsFramesAndSecondsOfTracksThatCount) {
+  Tracks tracks;
+  Append(&tracks, 1, 0, 3);
+  Append(&tracks, 2, 2, 5);
+  Append(&tracks, 3, 4, 10);
+  Append(&tracks, 4, 1, 2);   // too short
+  Append(&tracks, 5, 19, 1);  // too short
+  const auto statistics = ComputeLifetimes(Sorted(tracks), FrameStamps(20));
+  EXPECT_EQ(statistics.frames, 20);
+  EXPECT_EQ(statistics.tracks, 3);
+  EXPECT_EQ(statistics.tracks_too_short, 2);
+  EXPECT_EQ(statistics.tracks_cut_short, 0);
+  EXPECT_DOUBLE_EQ(statistics.in_frames.mean, 6.0);
+  EXPECT_DOUBLE_EQ(statistics.in_frames.median, 5.0);
+  EXPECT_DOUBLE_EQ(statistics.in_frames.max, 10.0);
+  EXPECT_DOUBLE_EQ(statistics.in_frames.standard_deviation, std::sqrt((9.0 + 1.0 + 16.0) / 3.0));
+  EXPECT_DOUBLE_EQ(statistics.in_seconds.mean, (2 + 4 + 9) * 0.025 / 3.0);
+  EXPECT_DOUBLE_EQ(statistics.in_seconds.max, 0.225);
+}
+
+TEST(Lifetime, TakesTheMeanOfTheTwoMiddleValuesAsMedian) {
+  Tracks tracks;
+  Append(&tracks, 1, 0, 4);
+  Append(&tracks, 2, 0, 7);
+  EXPECT_DOUBLE_EQ(ComputeLifetimes(Sorted(tracks), FrameStamps(10)).in_frames.median, 5.5);
+}
+
+TEST(Lifetime, ReportsTracksThatTheEndOfTheRecordingCuts) {
+  Tracks tracks;
+  Append(&tracks, 1, 0, 5);
+  Append(&tracks, 2, 5, 5);
+  EXPECT_EQ(ComputeLifetimes(Sorted(tracks), FrameStamps(10)).tracks_cut_short, 1);
+}
+
+TEST(Lifetime, HistogramHoldsEveryTrackOnceInBinsWithoutHoles) {
+  for (const int longest : {3, 62, 63, 120, 700, 5000}) {
+    Tracks tracks;
+    Append(&tracks, 0, 0, longest);
+    for (int i = 1; i <= 40; ++i) Append(&tracks, i, 0, 3 + (i * 37) % (longest - 2));
+    const auto statistics = ComputeLifetimes(Sorted(tracks), FrameStamps(longest));
+    const auto& bins = statistics.histogram;
+    ASSERT_FALSE(bins.empty());
+    EXPECT_LE(bins.size(), 60u);
+    EXPECT_EQ(bins.front().low, kFewestFrames);
+    EXPECT_LT(bins.back().low, longest + 1);
+    EXPECT_GT(bins.back().high, longest);
+    for (std::size_t i = 1; i < bins.size(); ++i) EXPECT_EQ(bins[i].low, bins[i - 1].high);
+    const auto total = std::accumulate(bins.begin(), bins.end(), std::int64_t{0},
+                                       [](std::int64_t sum, const LifetimeBin& bin) { return sum + bin.tracks; });
+    EXPECT_EQ(total, statistics.tracks);
+  }
+}
+
+TEST(Lifetime, NoTracksIsNotAnError) {
+  const auto statistics = ComputeLifetimes({}, FrameStamps(4));
+  EXPECT_EQ(statistics.tracks, 0);
+  EXPECT_EQ(statistics.in_frames.mean, 0.0);
+  EXPECT_TRUE(statistics.histogram.empty());
+}
+
+}  // namespace
+}  // namespace evo
