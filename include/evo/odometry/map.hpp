@@ -17,4 +17,12 @@ struct Map {
   const Point* Find(std::int64_t track) const;
 };
 
+/// Depths in a camera of the map's points that a frame sees.
+struct SceneDepth {
+  double median = 0.0;
+  double near = 0.0;  ///< the 5 % nearest are nearer
+};
+/// `depths` are positive; zeros if it is empty.
+SceneDepth MeasureSceneDepth(std::vector<double> depths);
+
 }  // namespace evo
