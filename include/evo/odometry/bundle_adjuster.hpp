@@ -1,0 +1,65 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "evo/geometry/se3.hpp"
+
+namespace evo {
+
+/// A point as (alpha, beta, rho) in the camera of an anchor whose pose stays as it is: X_anchor = (alpha, beta, 1) /
+/// rho. Inverse depth makes far points as harmless as near ones; rho = 0 is a point at infinity.
+struct BundlePoint {
+  SE3 T_world_anchor;
+  Eigen::Vector3d inverse_depth;  ///< alpha, beta, rho
+
+  Eigen::Vector3d World() const;
+};
+
+struct BundleObservation {
+  int frame = 0;
+  int point = 0;
+  Eigen::Vector2d x;            ///< on the plane z = 1
+  Eigen::Matrix2d px_per_unit;  ///< see Feature
+};
+
+struct BundleProblem {
+  std::vector<SE3> T_cam_world;  ///< in order of time
+  int fixed_frames = 1;          ///< the first so many poses stay: 1 leaves the scale free, 2 holds it
+  std::vector<BundlePoint> points;
+  std::vector<BundleObservation> observations;  ///< in order of points, then of frames
+};
+
+struct BundleOptions {
+  int iterations = 20;
+  double loss_px = 1.0;             ///< Cauchy's width
+  double relative_decrease = 1e-5;  ///< of the cost in one step: stop below
+};
+
+struct BundleSummary {
+  int iterations = 0;
+  double initial_cost = 0.0;  ///< px^2
+  double final_cost = 0.0;    ///< px^2
+};
+
+/// The residual in raw pixels (to first order about the observation) and its derivatives by the left twist of the
+/// camera and by the point's three numbers. False if the point is behind the camera.
+struct BundleJacobian {
+  Eigen::Vector2d error;
+  Eigen::Matrix<double, 2, 6> by_pose;
+  Eigen::Matrix<double, 2, 3> by_point;
+};
+bool Linearize(const SE3& T_cam_world, const BundlePoint& point, const BundleObservation& observation,
+               BundleJacobian* jacobian);
+
+/// Refines poses and points together: Levenberg-Marquardt on Cauchy's loss of the reprojection errors, the points
+/// eliminated by Schur's complement, the poses solved by a skyline Cholesky factorisation.
+BundleSummary AdjustBundle(const BundleOptions& options, BundleProblem* problem);
+
+/// Residual norms in px, infinite behind the camera.
+std::vector<double> BundleResiduals(const BundleProblem& problem);
+
+/// For every pose that is free, the first free pose that shares a point with it: the skyline of the reduced system.
+std::vector<int> BundleSkyline(const BundleProblem& problem);
+
+}  // namespace evo

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "evo/core/parameters.hpp"
+#include "evo/odometry/frame.hpp"
+#include "evo/odometry/point.hpp"
+
+namespace evo {
+
+struct FinalRefinementOptions {
+  bool enabled = true;
+  double min_disparity_px = 0.5;  ///< frames with less image motion since the last one taken are left to the end
+  int iterations = 20;            ///< of each of the two rounds
+  double loss_px = 1.0;           ///< width of Cauchy's loss in the first round
+  double budget = 2e7;            ///< 6x6 block products an iteration may cost; beyond it frames are thinned out
+};
+void Register(Parameters& parameters, FinalRefinementOptions& options);
+
+/// A stretch of frames that were tracked in one map, and what is known of them.
+struct Segment {
+  std::vector<int> frames;       ///< indices, in order of time
+  std::vector<SE3> T_cam_world;  ///< of these frames
+  std::vector<int> inliers;      ///< of these frames
+  std::vector<Point> points;     ///< of the map
+};
+
+/// Bundle adjustment over the frames of one segment and all their tracks, then every frame's pose against the refined
+/// points, also of frames up to `before` and `after` that the tracking had not reached. The first pose and the length
+/// of the path stay. `frames` are all frames of the run; the segment may reach over the indices [before, after).
+void RefineSegment(const FinalRefinementOptions& options, const std::vector<Frame>& frames, int before, int after,
+                   const std::function<void(double)>& progress, Segment* segment);
+
+}  // namespace evo

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include "evo/core/parameters.hpp"
+#include "evo/odometry/bootstrap.hpp"
+#include "evo/odometry/frame.hpp"
+#include "evo/odometry/mapper.hpp"
+#include "evo/odometry/mapping_thread.hpp"
+#include "evo/odometry/pose_optimizer.hpp"
+
+namespace evo {
+
+struct KeyFrameOptions {
+  double translation = 0.1;       ///< since the last key frame, as a share of the median depth
+  double rotation_deg = 10.0;     ///< since the last key frame
+  double disparity_px = 40.0;     ///< median image motion since the last key frame
+  double min_shared_ratio = 0.8;  ///< fewer of the present tracks seen by the last key frame: time for seeds
+  double min_disparity_px = 3.0;  ///< never a key frame with less image motion: the camera stands
+};
+
+struct FrameHandlerOptions {
+  int lag = 2;  ///< frames after which a frame's depths are in the map, whatever the number of threads
+  BootstrapOptions bootstrap;
+  PoseOptions pose;
+  KeyFrameOptions key_frame;
+  MapperOptions mapper;
+};
+void Register(Parameters& parameters, FrameHandlerOptions& options);
+
+/// What became of one frame.
+struct FrameRecord {
+  int segment = -1;    ///< of the map that it was tracked in; -1: it has no pose
+  int reference = -1;  ///< key frame that the pose is relative to
+  SE3 T_cam_reference;
+  int inliers = 0;
+};
+
+/// The centre of the odometry: bootstraps, tracks frame by frame, chooses key frames, feeds the depth thread, and
+/// starts a new segment of the map after a loss.
+class FrameHandler {
+ public:
+  /// `frames` outlives this object. `threads` > 1 gives the mapping a thread of its own.
+  FrameHandler(const FrameHandlerOptions& options, const std::vector<Frame>& frames, double focal_px, int threads);
+
+  /// Works through all frames. `progress` gets the share of the work done.
+  void Run(const std::function<void(double)>& progress);
+
+  const std::vector<FrameRecord>& records() const { return records_; }
+  /// T_cam_world of a frame that has a pose.
+  SE3 Pose(int index) const;
+  const std::vector<int>& key_frames() const { return key_indices_; }
+  const std::vector<int>& bootstraps() const { return bootstraps_; }
+  const std::vector<int>& losses() const { return losses_; }
+  /// Complete after Run(): all points of all segments.
+  std::vector<Point> Points() const;
+  /// Why there is no (new) map yet.
+  const std::string& obstacle() const { return bootstrapper_.obstacle(); }
+
+ private:
+  struct Sighted {
+    std::vector<std::int64_t> tracks;
+    std::vector<PoseObservation> observations;
+  };
+  void Step(int index);
+  void Apply(int index);
+  bool Track(int index);
+  Sighted Sight(const Frame& frame) const;
+  SE3 Predict(TimeNs t) const;
+  void Commit(int index, const Sighted& sighted, const PoseEstimate& estimate);
+  bool IsKeyFrame(int index, const SE3& T_cam_world, const Sighted& sighted) const;
+  void StartSegment(Bootstrap bootstrap);
+  void PlaceSegment(Bootstrap* bootstrap) const;
+  void Remember(int index, const SE3& T_cam_world, bool key_frame, int inliers, FrameMessage* message);
+
+  FrameHandlerOptions options_;
+  const std::vector<Frame>& frames_;
+  PoseOptimizer optimizer_;
+  Bootstrapper bootstrapper_;
+  Mapper mapper_;
+  std::unordered_map<std::int64_t, Eigen::Vector3d> landmarks_;  // the pose thread's view of the map, world
+  std::vector<SE3> key_poses_;                                   // T_cam_world
+  std::vector<int> key_indices_;                                 // of the frames
+  std::vector<FrameRecord> records_;
+  std::vector<int> bootstraps_;
+  std::vector<int> losses_;
+  bool tracking_ = false;
+  int last_ = -1;         // the last frame with a pose
+  int before_last_ = -1;  // the one before, in the same segment; -1 at its beginning
+  double usual_scale_px_ = 0.0;
+  MappingThread mapping_;  // last: its thread ends before what it works on
+};
+
+}  // namespace evo

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "evo/core/parameters.hpp"
+#include "evo/core/time.hpp"
+#include "evo/geometry/camera.hpp"
+#include "evo/geometry/trajectory.hpp"
+#include "evo/io/tracks.hpp"
+#include "evo/odometry/final_refinement.hpp"
+#include "evo/odometry/frame_handler.hpp"
+#include "evo/odometry/point.hpp"
+#include "evo/odometry/resampling.hpp"
+
+namespace evo {
+
+struct OdometryOptions {
+  ResamplingOptions resampling;
+  FrameHandlerOptions frame_handler;
+  FinalRefinementOptions final_refinement;
+};
+void Register(Parameters& parameters, OdometryOptions& options);
+
+struct OdometryResult {
+  Trajectory trajectory;      ///< a pose for every frame that could be estimated, and for no other
+  std::vector<int> inliers;   ///< points that agreed with each of them
+  std::vector<Point> points;  ///< the map, world
+  bool resampled = false;     ///< the tracks were asynchronous
+  int frames = 0;             ///< with and without a pose
+  int key_frames = 0;
+  std::vector<TimeNs> bootstraps;  ///< first frame of every segment of the map; more than one: the scale was lost
+  std::vector<TimeNs> lost;        ///< frames between the first and the last pose that have none
+};
+
+/// Monocular visual odometry from feature tracks: the paper's pose and depth threads, then one refinement over the
+/// whole run. The scale is arbitrary. The result does not depend on `threads` (2 or more: the depths get their own
+/// thread). Throws Error: kInput if tracks and camera do not belong together, kTrackingLost if no map could ever be
+/// started.
+OdometryResult RunOdometry(const Tracks& tracks, const Camera& camera, const OdometryOptions& options, int threads,
+                           const std::function<void(double)>& progress);
+
+}  // namespace evo

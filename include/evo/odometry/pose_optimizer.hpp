@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "evo/core/parameters.hpp"
+#include "evo/geometry/se3.hpp"
+
+namespace evo {
+
+struct PoseOptions {
+  int iterations = 10;
+  double inlier_px = 2.0;         ///< a residual below this is an inlier whatever the others are
+  int min_inliers = 6;            ///< fewer and the camera is lost
+  double min_inlier_ratio = 0.5;  ///< of the points in view
+};
+void Register(Parameters& parameters, PoseOptions& options);
+
+/// A point of the map and where the frame saw it.
+struct PoseObservation {
+  Eigen::Vector3d point_world;
+  Eigen::Vector2d x;            ///< on the plane z = 1
+  Eigen::Matrix2d px_per_unit;  ///< see Feature
+};
+
+struct PoseEstimate {
+  SE3 T_cam_world;
+  std::vector<bool> inliers;
+  int inlier_count = 0;
+  double scale_px = 0.0;  ///< robust standard deviation of a residual's coordinate
+  double cost = 0.0;      ///< sum of the weighted squared residuals, px^2
+  /// Of the left twist (translation, rotation); zero if the pose is not determined.
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+};
+
+/// e(xi) = u - (1/Z) K exp(xi^) P (equation 1) in raw pixels, to first order about the observation. Infinite behind the
+/// camera.
+Eigen::Vector2d ReprojectionError(const SE3& T_cam_world, const PoseObservation& observation);
+/// de / d delta for T <- Exp(delta) T (equation 2).
+Eigen::Matrix<double, 2, 6> ReprojectionJacobian(const SE3& T_cam_world, const PoseObservation& observation);
+
+/// The pose of one frame against known points: Gauss-Newton on the weighted normal equations (equations 3-5).
+/// The weights w_i are Tukey's, with the scale taken from the residuals' median; the first iterations use Huber's,
+/// which does not need a good start.
+class PoseOptimizer {
+ public:
+  explicit PoseOptimizer(const PoseOptions& options) : options_(options) {}
+
+  /// `start` is T_cam_world. With fewer than three points the start comes back without inliers.
+  PoseEstimate Optimize(std::span<const PoseObservation> observations, const SE3& start) const;
+
+  /// Whether there are inliers enough to believe the pose.
+  bool Accepts(const PoseEstimate& estimate) const;
+
+ private:
+  PoseOptions options_;
+};
+
+}  // namespace evo

@@ -1,0 +1,233 @@
+#include "evo/geometry/two_view.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <random>
+
+#include "evo/geometry/triangulation.hpp"
+
+namespace evo {
+
+namespace {
+
+constexpr std::size_t kSampleSize = 8;
+constexpr int kRefinements = 10;
+constexpr double kPromising = 1.5;  // of the best cost so far
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+/// Hartley's similarity: centroid to the origin, mean distance to sqrt(2).
+std::optional<Matrix3d> Normalizer(std::span<const Correspondence> pairs, Vector2d Correspondence::*side) {
+  Vector2d mean = Vector2d::Zero();
+  for (const auto& pair : pairs) mean += pair.*side;
+  mean /= static_cast<double>(pairs.size());
+  double distance = 0.0;
+  for (const auto& pair : pairs) distance += (pair.*side - mean).norm();
+  distance /= static_cast<double>(pairs.size());
+  if (!(distance > 1e-12)) return std::nullopt;
+  const double scale = M_SQRT2 / distance;
+  Matrix3d normalizer;
+  normalizer << scale, 0, -scale * mean.x(), 0, scale, -scale * mean.y(), 0, 0, 1;
+  return normalizer;
+}
+
+bool InFrontOfBoth(const Correspondence& pair, const SE3& T_2_1) {
+  const auto depths = TriangulatePair(pair.x1, pair.x2, T_2_1);
+  return depths && depths->z1 > 0.0 && depths->z2 > 0.0;
+}
+
+/// Of the four motions the one with the most points in front of both cameras.
+SE3 ChooseByCheirality(const Matrix3d& essential, std::span<const Correspondence> pairs) {
+  SE3 best;
+  std::ptrdiff_t most = -1;
+  for (const SE3& motion : DecomposeEssential(essential)) {
+    const auto count = std::ranges::count_if(pairs, [&](const auto& pair) { return InFrontOfBoth(pair, motion); });
+    if (count > most) {
+      most = count;
+      best = motion;
+    }
+  }
+  return best;
+}
+
+/// dE for the five steps of the refinement: a left turn about x, y, z, and t along its two tangents.
+std::array<Matrix3d, 5> EssentialDerivatives(const SE3& pose, const Vector3d& tangent1, const Vector3d& tangent2) {
+  const Matrix3d rotation = pose.RotationMatrix();
+  const Matrix3d hat = so3::Hat(pose.translation());
+  return {hat * so3::Hat(Vector3d::UnitX()) * rotation, hat * so3::Hat(Vector3d::UnitY()) * rotation,
+          hat * so3::Hat(Vector3d::UnitZ()) * rotation, so3::Hat(tangent1) * rotation, so3::Hat(tangent2) * rotation};
+}
+
+double SampsonWithJacobian(const Matrix3d& essential, const std::array<Matrix3d, 5>& derivatives,
+                           const Correspondence& pair, Eigen::Matrix<double, 5, 1>* jacobian) {
+  const Vector3d x1 = pair.x1.homogeneous();
+  const Vector3d x2 = pair.x2.homogeneous();
+  const Vector3d line2 = essential * x1;
+  const Vector3d line1 = essential.transpose() * x2;
+  const double length = std::sqrt(std::max(line1.head<2>().squaredNorm() + line2.head<2>().squaredNorm(), 1e-24));
+  const double error = x2.dot(line2) / length;
+  for (int k = 0; k < 5; ++k) {
+    const Vector3d change2 = derivatives[k] * x1;
+    const Vector3d change1 = derivatives[k].transpose() * x2;
+    const double change_of_length =
+        (line1.head<2>().dot(change1.head<2>()) + line2.head<2>().dot(change2.head<2>())) / length;
+    (*jacobian)[k] = (x2.dot(change2) - error * change_of_length) / length;
+  }
+  return error;
+}
+
+/// A motion with its inliers; `cost` sums the squared errors, cut off at the threshold (smaller is better).
+struct Candidate {
+  RelativePose pose;
+  double cost = 0.0;
+};
+
+Candidate Judge(std::span<const Correspondence> pairs, const SE3& T_2_1, double threshold) {
+  const Matrix3d essential = Essential(T_2_1);
+  Candidate result{{T_2_1, std::vector<bool>(pairs.size()), 0}, 0.0};
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const double error = std::abs(SampsonError(essential, pairs[i]));
+    const bool inlier = error < threshold && InFrontOfBoth(pairs[i], T_2_1);
+    result.pose.inliers[i] = inlier;
+    result.pose.inlier_count += inlier ? 1 : 0;
+    result.cost += inlier ? error * error : threshold * threshold;
+  }
+  return result;
+}
+
+std::vector<Correspondence> Select(std::span<const Correspondence> pairs, const std::vector<bool>& chosen) {
+  std::vector<Correspondence> selected;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (chosen[i]) selected.push_back(pairs[i]);
+  }
+  return selected;
+}
+
+/// Refines on the inliers while that helps.
+Candidate Polish(std::span<const Correspondence> pairs, Candidate best, double threshold) {
+  for (int round = 0; round < 5 && best.pose.inlier_count >= static_cast<int>(kSampleSize); ++round) {
+    const SE3 refined = RefineRelativePose(Select(pairs, best.pose.inliers), best.pose.T_2_1);
+    Candidate candidate = Judge(pairs, refined, threshold);
+    if (!(candidate.cost < best.cost)) break;
+    best = std::move(candidate);
+  }
+  return best;
+}
+
+int SamplesNeeded(int inliers, std::size_t total, const RelativePoseOptions& options) {
+  const double all_good = std::pow(static_cast<double>(inliers) / static_cast<double>(total), kSampleSize);
+  if (all_good > 1.0 - 1e-9) return 0;
+  const double needed = std::log1p(-options.confidence) / std::log1p(-all_good);
+  return needed < options.iterations ? static_cast<int>(needed) + 1 : options.iterations;
+}
+
+}  // namespace
+
+std::optional<Matrix3d> EightPoint(std::span<const Correspondence> pairs) {
+  if (pairs.size() < kSampleSize) return std::nullopt;
+  const auto normalizer1 = Normalizer(pairs, &Correspondence::x1);
+  const auto normalizer2 = Normalizer(pairs, &Correspondence::x2);
+  if (!normalizer1 || !normalizer2) return std::nullopt;
+  Eigen::Matrix<double, 9, 9> normal = Eigen::Matrix<double, 9, 9>::Zero();
+  for (const auto& pair : pairs) {
+    const Vector3d a = *normalizer1 * pair.x1.homogeneous();
+    const Vector3d b = *normalizer2 * pair.x2.homogeneous();
+    Eigen::Matrix<double, 9, 1> row;  // equation 12, e in the order of rows of E
+    row << b.x() * a, b.y() * a, a;
+    normal += row * row.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver(normal);
+  const Eigen::Matrix<double, 9, 1> e = solver.eigenvectors().col(0);
+  Matrix3d raw;
+  raw << e.segment<3>(0).transpose(), e.segment<3>(3).transpose(), e.segment<3>(6).transpose();
+  raw = normalizer2->transpose() * raw * *normalizer1;
+  const Eigen::JacobiSVD<Matrix3d> svd(raw, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  return svd.matrixU() * Vector3d(1, 1, 0).asDiagonal() * svd.matrixV().transpose();
+}
+
+std::array<SE3, 4> DecomposeEssential(const Matrix3d& essential) {
+  const Eigen::JacobiSVD<Matrix3d> svd(essential, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Matrix3d u = svd.matrixU();
+  Matrix3d v = svd.matrixV();
+  if (u.determinant() < 0) u.col(2) *= -1.0;
+  if (v.determinant() < 0) v.col(2) *= -1.0;
+  Matrix3d quarter_turn;
+  quarter_turn << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  const Eigen::Quaterniond first(Matrix3d(u * quarter_turn * v.transpose()));
+  const Eigen::Quaterniond second(Matrix3d(u * quarter_turn.transpose() * v.transpose()));
+  const Vector3d t = u.col(2);
+  return {SE3(first, t), SE3(first, -t), SE3(second, t), SE3(second, -t)};
+}
+
+Matrix3d Essential(const SE3& T_2_1) { return so3::Hat(T_2_1.translation()) * T_2_1.RotationMatrix(); }
+
+double SampsonError(const Matrix3d& essential, const Correspondence& pair) {
+  const Vector3d line2 = essential * pair.x1.homogeneous();
+  const Vector3d line1 = essential.transpose() * pair.x2.homogeneous();
+  const double gradient2 = line1.head<2>().squaredNorm() + line2.head<2>().squaredNorm();
+  return pair.x2.homogeneous().dot(line2) / std::sqrt(std::max(gradient2, 1e-24));
+}
+
+SE3 RefineRelativePose(std::span<const Correspondence> pairs, const SE3& T_2_1) {
+  SE3 pose(T_2_1.rotation(), T_2_1.translation().normalized());
+  for (int i = 0; i < kRefinements; ++i) {
+    const Vector3d t = pose.translation();
+    const Vector3d tangent1 = t.unitOrthogonal();
+    const Vector3d tangent2 = t.cross(tangent1);
+    const Matrix3d essential = Essential(pose);
+    const auto derivatives = EssentialDerivatives(pose, tangent1, tangent2);
+    Eigen::Matrix<double, 5, 5> normal = Eigen::Matrix<double, 5, 5>::Zero();
+    Eigen::Matrix<double, 5, 1> gradient = Eigen::Matrix<double, 5, 1>::Zero();
+    for (const auto& pair : pairs) {
+      Eigen::Matrix<double, 5, 1> jacobian;
+      const double error = SampsonWithJacobian(essential, derivatives, pair, &jacobian);
+      normal += jacobian * jacobian.transpose();
+      gradient += jacobian * error;
+    }
+    normal.diagonal().array() += 1e-9 * normal.diagonal().maxCoeff();
+    const Eigen::Matrix<double, 5, 1> step = -normal.ldlt().solve(gradient);
+    if (!step.allFinite()) break;
+    pose = SE3(so3::Exp(step.head<3>()) * pose.rotation(), (t + step[3] * tangent1 + step[4] * tangent2).normalized());
+    if (step.norm() < 1e-10) break;
+  }
+  return pose;
+}
+
+std::optional<RelativePose> EstimateRelativePose(std::span<const Correspondence> pairs,
+                                                 const RelativePoseOptions& options) {
+  if (pairs.size() < kSampleSize) return std::nullopt;
+  std::mt19937 random(options.seed);
+  std::vector<std::size_t> order(pairs.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<Correspondence> sample(kSampleSize);
+  Candidate best;
+  best.cost = std::numeric_limits<double>::infinity();
+  int needed = options.iterations;
+  for (int i = 0; i < needed; ++i) {
+    for (std::size_t k = 0; k < kSampleSize; ++k) {  // partial Fisher-Yates; the modulo's bias is below 1e-6
+      std::swap(order[k], order[k + random() % (order.size() - k)]);
+      sample[k] = pairs[order[k]];
+    }
+    const auto essential = EightPoint(sample);
+    if (!essential) continue;
+    const Candidate candidate = Judge(pairs, ChooseByCheirality(*essential, sample), options.threshold);
+    // A sample's motion is far from the best that its inliers allow: every promising one is polished before it is
+    // judged.
+    if (!(candidate.cost < kPromising * best.cost)) continue;
+    Candidate polished = Polish(pairs, candidate, options.threshold);
+    if (!(polished.cost < best.cost)) continue;
+    best = std::move(polished);
+    needed = std::min(options.iterations, SamplesNeeded(best.pose.inlier_count, pairs.size(), options));
+  }
+  if (best.pose.inlier_count < static_cast<int>(kSampleSize)) return std::nullopt;
+  return best.pose;
+}
+
+}  // namespace evo

@@ -1,0 +1,112 @@
+#include "evo/odometry/odometry.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <string>
+
+#include "evo/core/error.hpp"
+
+namespace evo {
+
+namespace {
+
+constexpr double kTrackingShare = 0.5;  // of the progress bar, before the final refinement
+
+/// The run cut into its segments, with the poses as the tracking left them.
+std::vector<Segment> CutSegments(const FrameHandler& handler) {
+  std::vector<Segment> segments(handler.bootstraps().size());
+  for (std::size_t i = 0; i < handler.records().size(); ++i) {
+    const FrameRecord& record = handler.records()[i];
+    if (record.segment < 0) continue;
+    Segment& segment = segments[record.segment];
+    segment.frames.push_back(static_cast<int>(i));
+    segment.T_cam_world.push_back(handler.Pose(static_cast<int>(i)));
+    segment.inliers.push_back(record.inliers);
+  }
+  return segments;
+}
+
+/// Refines every segment and carries each change of a segment's end on to those after it.
+void RefineSegments(const FinalRefinementOptions& options, const std::vector<Frame>& frames,
+                    const std::function<void(double)>& progress, std::vector<Segment>* segments) {
+  SE3 T_new_old;  // of the world
+  int before = 0;
+  const double count = static_cast<double>(segments->size());
+  for (std::size_t i = 0; i < segments->size(); ++i) {
+    Segment& segment = (*segments)[i];
+    for (SE3& pose : segment.T_cam_world) pose = pose * T_new_old.Inverse();
+    for (Point& point : segment.points) point.position = T_new_old * point.position;
+    const SE3 old_end = segment.T_cam_world.back();
+    const int end = segment.frames.back();
+    const int after = i + 1 < segments->size() ? (*segments)[i + 1].frames.front() : static_cast<int>(frames.size());
+    RefineSegment(
+        options, frames, before, after, [&](double share) { progress((static_cast<double>(i) + share) / count); },
+        &segment);
+    const auto at_end = std::ranges::lower_bound(segment.frames, end);
+    const SE3& new_end = segment.T_cam_world[static_cast<std::size_t>(at_end - segment.frames.begin())];
+    T_new_old = new_end.Inverse() * old_end * T_new_old;
+    before = segment.frames.back() + 1;
+  }
+}
+
+void ListLost(const std::vector<Frame>& frames, OdometryResult* result) {
+  auto pose = result->trajectory.begin();
+  for (const Frame& frame : frames) {
+    if (pose == result->trajectory.end()) break;
+    if (pose->t == frame.t) {
+      ++pose;
+    } else if (pose != result->trajectory.begin()) {
+      result->lost.push_back(frame.t);
+    }
+  }
+}
+
+}  // namespace
+
+void Register(Parameters& parameters, OdometryOptions& options) {
+  Register(parameters, options.resampling);
+  Register(parameters, options.frame_handler);
+  Register(parameters, options.final_refinement);
+}
+
+OdometryResult RunOdometry(const Tracks& tracks, const Camera& camera, const OdometryOptions& options, int threads,
+                           const std::function<void(double)>& progress) {
+  OdometryResult result;
+  result.resampled = !AreSynchronous(tracks);
+  if (result.resampled) {
+    spdlog::info("odometry: asynchronous tracks, resampled every {} s", options.resampling.frame_interval_s);
+  } else {
+    spdlog::info("odometry: the tracks come in frames and are used as they are");
+  }
+  const std::vector<Frame> frames =
+      BuildFrames(result.resampled ? Resample(tracks, options.resampling) : tracks, camera);
+  result.frames = static_cast<int>(frames.size());
+
+  FrameHandler handler(options.frame_handler, frames, camera.focal_px(), threads);
+  handler.Run([&](double share) { progress(kTrackingShare * share); });
+  if (handler.bootstraps().empty()) {
+    throw Error(ErrorKind::kTrackingLost, "no pair of the " + std::to_string(frames.size()) +
+                                              " frames could start a map; at the end: " + handler.obstacle());
+  }
+  std::vector<Segment> segments = CutSegments(handler);
+  segments.back().points = handler.Points();
+  if (options.final_refinement.enabled) {
+    RefineSegments(
+        options.final_refinement, frames,
+        [&](double share) { progress(kTrackingShare + (1.0 - kTrackingShare) * share); }, &segments);
+  }
+  for (const Segment& segment : segments) {
+    for (std::size_t i = 0; i < segment.frames.size(); ++i) {
+      result.trajectory.push_back({frames[segment.frames[i]].t, segment.T_cam_world[i].Inverse()});
+      result.inliers.push_back(segment.inliers[i]);
+    }
+    result.points.insert(result.points.end(), segment.points.begin(), segment.points.end());
+  }
+  result.key_frames = static_cast<int>(handler.key_frames().size());
+  for (const int index : handler.bootstraps()) result.bootstraps.push_back(frames[index].t);
+  ListLost(frames, &result);
+  return result;
+}
+
+}  // namespace evo

@@ -1,0 +1,113 @@
+#include "evo/geometry/two_view.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "evo/geometry/triangulation.hpp"
+
+namespace evo {
+namespace {
+
+/// Pairs of a forward-moving camera that also turns a little; `noise` on the plane z = 1.
+std::vector<Correspondence> ForwardDrive(const SE3& T_2_1, int count, double noise, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> side(-0.7, 0.7), depth(4.0, 40.0);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  std::vector<Correspondence> pairs;
+  while (static_cast<int>(pairs.size()) < count) {
+    const double z = depth(random);
+    const Eigen::Vector3d p1(side(random) * z, 0.5 * side(random) * z, z);
+    const Eigen::Vector3d p2 = T_2_1 * p1;
+    if (p2.z() < 1.0) continue;
+    const auto jitter = [&] { return Eigen::Vector2d(noise * normal(random), noise * normal(random)); };
+    pairs.push_back({p1.head<2>() / p1.z() + jitter(), p2.head<2>() / p2.z() + jitter()});
+  }
+  return pairs;
+}
+
+SE3 Motion() { return {so3::Exp({0.01, -0.06, 0.005}), Eigen::Vector3d(0.1, -0.02, -2.0)}; }
+
+double RotationError(const SE3& a, const SE3& b) { return so3::Log(a.rotation() * b.rotation().conjugate()).norm(); }
+
+double DirectionError(const SE3& a, const SE3& b) {
+  return std::acos(std::clamp(a.translation().normalized().dot(b.translation().normalized()), -1.0, 1.0));
+}
+
+TEST(TwoView, EightPointIsExactWithoutNoise) {
+  const auto pairs = ForwardDrive(Motion(), 20, 0.0, 1);
+  const auto essential = EightPoint(pairs);
+  ASSERT_TRUE(essential);
+  for (const auto& pair : pairs) EXPECT_NEAR(SampsonError(*essential, pair), 0.0, 1e-9);
+  const Eigen::Matrix3d truth = Essential({Motion().rotation(), Motion().translation().normalized()});
+  EXPECT_LT(std::min((*essential - truth).norm(), (*essential + truth).norm()), 1e-7);
+}
+
+TEST(TwoView, DecompositionHoldsTheTrueMotion) {
+  const SE3 truth(Motion().rotation(), Motion().translation().normalized());
+  double smallest = 10.0;
+  for (const SE3& motion : DecomposeEssential(Essential(truth))) {
+    const Eigen::Matrix3d essential = Essential(motion);
+    EXPECT_LT(std::min((essential - Essential(truth)).norm(), (essential + Essential(truth)).norm()), 1e-9);
+    smallest = std::min(smallest, (motion.Matrix() - truth.Matrix()).norm());
+  }
+  EXPECT_LT(smallest, 1e-9);
+}
+
+TEST(TwoView, FewerThanEightPairsGiveNothing) {
+  EXPECT_FALSE(EightPoint(ForwardDrive(Motion(), 7, 0.0, 1)));
+  EXPECT_FALSE(EstimateRelativePose(ForwardDrive(Motion(), 7, 0.0, 1), {}));
+}
+
+TEST(TwoView, RansacFindsForwardMotionAmongOutliers) {
+  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+    auto pairs = ForwardDrive(Motion(), 80, 0.4 / 226.0, seed);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> far(-0.2, 0.2);
+    for (int i = 0; i < 16; ++i) pairs[5 * i].x2 += Eigen::Vector2d(far(random), far(random));
+    const auto pose = EstimateRelativePose(pairs, {.threshold = 1.5 / 226.0, .seed = seed});
+    ASSERT_TRUE(pose) << seed;
+    EXPECT_GE(pose->inlier_count, 58) << seed;
+    EXPECT_LT(RotationError(pose->T_2_1, Motion()), 0.005) << seed;
+    EXPECT_LT(DirectionError(pose->T_2_1, Motion()), 0.04) << seed;
+  }
+}
+
+TEST(TwoView, RefinementBeatsTheEightPointStart) {
+  double before = 0.0, after = 0.0;
+  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+    const auto pairs = ForwardDrive(Motion(), 60, 0.4 / 226.0, seed);
+    double best = 10.0;
+    SE3 start;
+    for (const SE3& motion : DecomposeEssential(*EightPoint(pairs))) {
+      const double error = RotationError(motion, Motion()) + DirectionError(motion, Motion());
+      if (error < best) {
+        best = error;
+        start = motion;
+      }
+    }
+    const SE3 refined = RefineRelativePose(pairs, start);
+    before += best;
+    after += RotationError(refined, Motion()) + DirectionError(refined, Motion());
+    const auto cost = [&](const SE3& motion) {
+      double sum = 0.0;
+      for (const auto& pair : pairs) sum += std::pow(SampsonError(Essential(motion), pair), 2);
+      return sum;
+    };
+    EXPECT_LT(cost(refined), cost({Motion().rotation(), Motion().translation().normalized()})) << seed;
+    EXPECT_LT(cost(refined), cost(start)) << seed;
+  }
+  EXPECT_LT(after, 0.9 * before);
+}
+
+TEST(TwoView, RansacIsRepeatable) {
+  const auto pairs = ForwardDrive(Motion(), 60, 0.5 / 226.0, 3);
+  const auto first = EstimateRelativePose(pairs, {});
+  const auto second = EstimateRelativePose(pairs, {});
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(first->T_2_1.Matrix(), second->T_2_1.Matrix());
+}
+
+}  // namespace
+}  // namespace evo

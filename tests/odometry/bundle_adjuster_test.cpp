@@ -1,0 +1,134 @@
+#include "evo/odometry/bundle_adjuster.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <random>
+
+#include "evo/odometry/block_skyline.hpp"
+
+namespace evo {
+namespace {
+
+/// A camera driving forward among points; poses and points as they truly are.
+BundleProblem Drive(int frames, int points, double noise_px, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> side(-0.6, 0.6), depth(5.0, 40.0);
+  std::normal_distribution<double> normal(0.0, noise_px);
+  BundleProblem problem;
+  for (int i = 0; i < frames; ++i) {
+    problem.T_cam_world.emplace_back(so3::Exp({0.001 * i, -0.01 * i, 0}), Eigen::Vector3d(0.02 * i, 0, -0.4 * i));
+  }
+  const Eigen::Matrix2d px_per_unit = 226.0 * Eigen::Matrix2d::Identity();
+  for (int p = 0; p < points; ++p) {
+    const int first = p % (frames - 4);
+    const double z = depth(random);
+    const SE3 T_world_anchor = problem.T_cam_world[first].Inverse();
+    BundlePoint point{T_world_anchor, {side(random), side(random), 1.0 / z}};
+    const int id = static_cast<int>(problem.points.size());
+    problem.points.push_back(point);
+    for (int i = first; i < std::min(frames, first + 8); ++i) {
+      const Eigen::Vector3d q = problem.T_cam_world[i] * point.World();
+      if (q.z() < 1.0) break;
+      const Eigen::Vector2d noise(normal(random), normal(random));
+      problem.observations.push_back({i, id, q.head<2>() / q.z() + noise / 226.0, px_per_unit});
+    }
+  }
+  return problem;
+}
+
+void Disturb(BundleProblem* problem, double by) {
+  std::mt19937 random(9);
+  std::normal_distribution<double> normal(0.0, by);
+  for (std::size_t i = problem->fixed_frames; i < problem->T_cam_world.size(); ++i) {
+    Vector6d xi;
+    for (int k = 0; k < 6; ++k) xi[k] = (k < 3 ? 1.0 : 0.1) * normal(random);
+    problem->T_cam_world[i] = SE3::Exp(xi) * problem->T_cam_world[i];
+  }
+  for (auto& point : problem->points) point.inverse_depth.z() *= std::exp(5 * normal(random));
+}
+
+TEST(BlockSkyline, SolvesLikeADenseFactorisation) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  const std::vector<int> first = {0, 0, 1, 0, 3, 3};
+  BlockSkyline sparse(first);
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(36, 36);
+  for (int i = 0; i < 6; ++i) {
+    for (int j = first[i]; j <= i; ++j) {
+      BlockSkyline::Block block = BlockSkyline::Block::NullaryExpr([&] { return normal(random); });
+      if (i == j) block = BlockSkyline::Block(block * block.transpose() + 60.0 * BlockSkyline::Block::Identity());
+      sparse.At(i, j) = block;
+      dense.block<6, 6>(6 * i, 6 * j) = block;
+      dense.block<6, 6>(6 * j, 6 * i) = block.transpose();
+    }
+  }
+  const Eigen::VectorXd b = Eigen::VectorXd::NullaryExpr(36, [&] { return normal(random); });
+  ASSERT_TRUE(sparse.Factorize());
+  EXPECT_LT((sparse.Solve(b) - dense.ldlt().solve(b)).norm(), 1e-10);
+}
+
+TEST(BlockSkyline, RefusesAnIndefiniteMatrix) {
+  BlockSkyline matrix({0});
+  matrix.At(0, 0) = -BlockSkyline::Block::Identity();
+  EXPECT_FALSE(matrix.Factorize());
+}
+
+TEST(BundleAdjuster, JacobiansMatchFiniteDifferences) {
+  const auto problem = Drive(8, 6, 15.0, 1);
+  const double h = 1e-6;
+  for (const auto& observation : problem.observations) {
+    const SE3& pose = problem.T_cam_world[observation.frame];
+    const BundlePoint& point = problem.points[observation.point];
+    BundleJacobian at, plus, minus;
+    ASSERT_TRUE(Linearize(pose, point, observation, &at));
+    for (int k = 0; k < 6; ++k) {
+      const Vector6d d = h * Vector6d::Unit(k);
+      ASSERT_TRUE(Linearize(SE3::Exp(d) * pose, point, observation, &plus));
+      ASSERT_TRUE(Linearize(SE3::Exp(-d) * pose, point, observation, &minus));
+      EXPECT_LT((at.by_pose.col(k) - (plus.error - minus.error) / (2 * h)).norm(), 1e-4);
+    }
+    for (int k = 0; k < 3; ++k) {
+      BundlePoint more = point, less = point;
+      more.inverse_depth[k] += h;
+      less.inverse_depth[k] -= h;
+      ASSERT_TRUE(Linearize(pose, more, observation, &plus));
+      ASSERT_TRUE(Linearize(pose, less, observation, &minus));
+      EXPECT_LT((at.by_point.col(k) - (plus.error - minus.error) / (2 * h)).norm(), 1e-3);
+    }
+  }
+}
+
+TEST(BundleAdjuster, RecoversTheTruthWithoutNoise) {
+  const auto truth = Drive(12, 120, 0.0, 2);
+  auto problem = truth;
+  problem.fixed_frames = 2;  // the scale is held
+  Disturb(&problem, 0.05);
+  const auto summary = AdjustBundle({.iterations = 50, .relative_decrease = 1e-12}, &problem);
+  EXPECT_LT(summary.final_cost, 1e-8);
+  EXPECT_LT(summary.final_cost, 1e-6 * summary.initial_cost);
+  for (std::size_t i = 0; i < truth.T_cam_world.size(); ++i) {
+    EXPECT_LT((problem.T_cam_world[i] * truth.T_cam_world[i].Inverse()).Log().norm(), 1e-5) << i;
+  }
+}
+
+TEST(BundleAdjuster, FreeScaleStillConverges) {
+  auto problem = Drive(12, 120, 0.0, 3);
+  Disturb(&problem, 0.05);
+  const auto summary = AdjustBundle({.iterations = 50, .relative_decrease = 1e-12}, &problem);
+  EXPECT_LT(summary.final_cost, 1e-8);
+}
+
+TEST(BundleAdjuster, OutliersHardlyMatter) {
+  const auto truth = Drive(12, 200, 0.0, 4);
+  auto problem = Drive(12, 200, 0.3, 4);
+  problem.fixed_frames = 2;
+  for (std::size_t i = 0; i < problem.observations.size(); i += 12) problem.observations[i].x.x() += 0.1;
+  AdjustBundle({.iterations = 50}, &problem);
+  const Vector6d error = (problem.T_cam_world.back() * truth.T_cam_world.back().Inverse()).Log();
+  EXPECT_LT(error.head<3>().norm(), 0.1);
+  EXPECT_LT(error.tail<3>().norm(), 0.005);
+}
+
+}  // namespace
+}  // namespace evo

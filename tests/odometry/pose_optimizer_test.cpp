@@ -1,0 +1,88 @@
+#include "evo/odometry/pose_optimizer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace evo {
+namespace {
+
+SE3 Truth() { return {so3::Exp({0.05, -0.2, 0.02}), Eigen::Vector3d(0.4, -0.1, -3.0)}; }
+
+std::vector<PoseObservation> Scene(int count, double noise_px, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> side(-0.6, 0.6), depth(4.0, 40.0);
+  std::normal_distribution<double> normal(0.0, noise_px);
+  std::vector<PoseObservation> observations;
+  for (int i = 0; i < count; ++i) {
+    const double z = depth(random);
+    const Eigen::Vector3d p(side(random) * z, side(random) * z, z);
+    Eigen::Matrix2d px_per_unit;
+    px_per_unit << 220.0, 5.0, 5.0, 210.0;
+    const Eigen::Vector2d noise(normal(random), normal(random));
+    observations.push_back({Truth().Inverse() * p, p.head<2>() / p.z() + px_per_unit.inverse() * noise, px_per_unit});
+  }
+  return observations;
+}
+
+double Distance(const SE3& a, const SE3& b) { return (a * b.Inverse()).Log().norm(); }
+
+TEST(PoseOptimizer, JacobianMatchesFiniteDifferences) {
+  for (const auto& observation : Scene(5, 20.0, 1)) {
+    const auto jacobian = ReprojectionJacobian(Truth(), observation);
+    for (int i = 0; i < 6; ++i) {
+      const Vector6d d = 1e-6 * Vector6d::Unit(i);
+      const Eigen::Vector2d numeric = (ReprojectionError(SE3::Exp(d) * Truth(), observation) -
+                                       ReprojectionError(SE3::Exp(-d) * Truth(), observation)) /
+                                      2e-6;
+      EXPECT_LT((jacobian.col(i) - numeric).norm(), 1e-4) << i;
+    }
+  }
+}
+
+TEST(PoseOptimizer, IsExactWithoutNoiseFromAPoorStart) {
+  const PoseOptimizer optimizer({});
+  const SE3 start = SE3::Exp((Vector6d() << 0.5, -0.3, 0.6, 0.05, 0.04, -0.05).finished()) * Truth();
+  const auto estimate = optimizer.Optimize(Scene(50, 0.0, 2), start);
+  EXPECT_EQ(estimate.inlier_count, 50);
+  EXPECT_LT(Distance(estimate.T_cam_world, Truth()), 1e-7);
+  EXPECT_TRUE(optimizer.Accepts(estimate));
+}
+
+TEST(PoseOptimizer, WithstandsThirtyPercentOutliers) {
+  for (std::uint32_t seed = 1; seed <= 5; ++seed) {
+    auto observations = Scene(80, 0.4, seed);
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> far(0.05, 0.2);
+    for (int i = 0; i < 24; ++i) observations[3 * i].x += Eigen::Vector2d(far(random), -far(random));
+    const PoseOptimizer optimizer({});
+    const auto estimate = optimizer.Optimize(observations, SE3::Exp(Vector6d::Constant(0.02)) * Truth());
+    EXPECT_LT(Distance(estimate.T_cam_world, Truth()), 0.05) << seed;
+    EXPECT_GE(estimate.inlier_count, 52) << seed;
+    EXPECT_LE(estimate.inlier_count, 58) << seed;
+    EXPECT_NEAR(estimate.scale_px, 0.4, 0.3) << seed;
+  }
+}
+
+TEST(PoseOptimizer, CovarianceForetellsTheSpread) {
+  Eigen::Matrix<double, 6, 6> spread = Eigen::Matrix<double, 6, 6>::Zero(), foretold = spread;
+  const int trials = 200;
+  for (int trial = 0; trial < trials; ++trial) {
+    const auto estimate = PoseOptimizer({}).Optimize(Scene(60, 0.4, 100 + trial), Truth());
+    const Vector6d error = (estimate.T_cam_world * Truth().Inverse()).Log();
+    spread += error * error.transpose() / trials;
+    foretold += estimate.covariance / trials;
+  }
+  EXPECT_NEAR(std::sqrt(spread(2, 2) / foretold(2, 2)), 1.0, 0.25);
+  EXPECT_NEAR(std::sqrt(spread(4, 4) / foretold(4, 4)), 1.0, 0.25);
+}
+
+TEST(PoseOptimizer, RefusesTooFewPoints) {
+  const PoseOptimizer optimizer({});
+  EXPECT_FALSE(optimizer.Accepts(optimizer.Optimize(Scene(2, 0.0, 1), Truth())));
+  EXPECT_FALSE(optimizer.Accepts(optimizer.Optimize(Scene(5, 0.0, 1), Truth())));
+}
+
+}  // namespace
+}  // namespace evo
