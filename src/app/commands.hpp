@@ -16,7 +16,11 @@ struct Command {
   std::function<void(const std::vector<std::string>& command_line)> run;
 };
 
-Command AddConfigCommand(CLI::App& app);
+Command AddRunCommand(CLI::App& app);
+Command AddTrackCommand(CLI::App& app);
+Command AddOdometryCommand(CLI::App& app);
 Command AddEvaluateCommand(CLI::App& app);
+Command AddInfoCommand(CLI::App& app);
+Command AddConfigCommand(CLI::App& app);
 
 }  // namespace evo::app

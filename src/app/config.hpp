@@ -2,15 +2,23 @@
 
 #include "evo/core/parameters.hpp"
 #include "evo/evaluation/evaluation.hpp"
+#include "evo/odometry/odometry.hpp"
+#include "evo/tracking/tracker_options.hpp"
 
 namespace evo::app {
 
 /// The options of all stages, gathered in one place, and their names for files and --set.
 struct Config {
-  Config() { Register(parameters, evaluation); }
+  Config() {
+    Register(parameters, tracker);
+    Register(parameters, odometry);
+    Register(parameters, evaluation);
+  }
   Config(const Config&) = delete;  // the parameters refer to the fields
   Config& operator=(const Config&) = delete;
 
+  TrackerOptions tracker;
+  OdometryOptions odometry;
   EvaluationOptions evaluation;
   Parameters parameters;
 };

@@ -93,11 +93,7 @@ Command AddEvaluateCommand(CLI::App& app) {
   parser->add_option("--ground-truth", arguments->ground_truth, "MVSEC _gt.hdf5, UZH groundtruth.txt or TUM text")
       ->required()
       ->type_name("FILE");
-  parser
-      ->add_option("--align", arguments->align,
-                   "comma-separated list of none, origin, origin-scale, se3, sim3, first:SECONDS")
-      ->capture_default_str()
-      ->type_name("LIST");
+  AddAlignmentOption(*parser, arguments->align);
   parser->add_option("--association", arguments->association, "interpolate the truth (default) or take evo's nearest")
       ->check(CLI::IsMember({"interpolate", "nearest"}).description(""))
       ->type_name("interpolate|nearest");
@@ -112,7 +108,8 @@ Command AddEvaluateCommand(CLI::App& app) {
   parser->add_option("--out", arguments->out, "folder for the results")->required()->type_name("DIR");
   parser->add_flag("--no-plots", arguments->no_plots, "write tables only");
   AddConfigurationOptions(*parser, arguments->common);
-  AddRunOptions(*parser, arguments->common);
+  AddComputeOptions(*parser, arguments->common);
+  AddGroundTruthSourceOption(*parser, arguments->common);
   parser->footer(
       "Example:\n  evo-run evaluate --estimate out/trajectory.txt --ground-truth outdoor_day2_gt.hdf5 --align "
       "origin-scale,sim3 --out out/evaluation");

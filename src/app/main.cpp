@@ -26,7 +26,9 @@ int Run(int argc, char** argv) {
   app.set_version_flag("--version", "evo-run " EVO_VERSION);
   app.require_subcommand(1);
   app.footer("'evo-run COMMAND --help' shows the options of a command and an example.");
-  const std::vector<evo::app::Command> commands{evo::app::AddEvaluateCommand(app), evo::app::AddConfigCommand(app)};
+  const std::vector<evo::app::Command> commands{evo::app::AddRunCommand(app),      evo::app::AddTrackCommand(app),
+                                                evo::app::AddOdometryCommand(app), evo::app::AddEvaluateCommand(app),
+                                                evo::app::AddInfoCommand(app),     evo::app::AddConfigCommand(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -22,11 +22,14 @@ void AddConfigurationOptions(CLI::App& command, CommonOptions& options) {
   command.add_flag("-q,--quiet", options.quiet, "say nothing on stderr but errors")->excludes(verbose);
 }
 
-void AddRunOptions(CLI::App& command, CommonOptions& options) {
+void AddComputeOptions(CLI::App& command, CommonOptions& options) {
   command.add_option("--threads", options.threads, "threads to use; 0 means one for each processor")
       ->check(CLI::Range(0, 1024))
       ->type_name("N");
   command.add_flag("--force", options.force, "overwrite earlier results in the --out folder");
+}
+
+void AddGroundTruthSourceOption(CLI::App& command, CommonOptions& options) {
   const std::map<std::string, GroundTruthSource> sources{{"loam", GroundTruthSource::kLoam},
                                                          {"cartographer", GroundTruthSource::kCartographer}};
   command
@@ -34,6 +37,12 @@ void AddRunOptions(CLI::App& command, CommonOptions& options) {
                   "which trajectory of an MVSEC ground truth file: loam (default) or cartographer")
       ->transform(CLI::CheckedTransformer(sources).description(""))
       ->type_name("loam|cartographer");
+}
+
+void AddAlignmentOption(CLI::App& command, std::string& align) {
+  command.add_option("--align", align, "comma-separated list of none, origin, origin-scale, se3, sim3, first:SECONDS")
+      ->capture_default_str()
+      ->type_name("LIST");
 }
 
 }  // namespace evo::app

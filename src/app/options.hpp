@@ -26,7 +26,10 @@ struct CommonOptions {
 
 /// --config, --set, -v and -q.
 void AddConfigurationOptions(CLI::App& command, CommonOptions& options);
-/// --threads, --force and --ground-truth-source, for the commands that compute something.
-void AddRunOptions(CLI::App& command, CommonOptions& options);
+/// --threads and --force, for the commands that compute something.
+void AddComputeOptions(CLI::App& command, CommonOptions& options);
+/// --ground-truth-source and --align, for the commands that compare with the truth.
+void AddGroundTruthSourceOption(CLI::App& command, CommonOptions& options);
+void AddAlignmentOption(CLI::App& command, std::string& align);
 
 }  // namespace evo::app

@@ -37,7 +37,7 @@ TrackingResult TrackEvents(EventReader* reader, int width, int height, const Tra
     for (const auto& feature : tracker.features()) {
       result.tracks.push_back({feature.id, t, feature.position.x(), feature.position.y()});
     }
-    if (observe) observe({history, tracker, t});
+    if (observe) observe({history, tracker, result.tracks, t});
   };
 
   // One block is decoded while the one before it is tracked.

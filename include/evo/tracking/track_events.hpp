@@ -22,6 +22,7 @@ struct TrackingResult {
 struct TrackingView {
   const EventHistory& history;
   const FeatureTracker& tracker;
+  const Tracks& tracks;  ///< so far
   TimeNs t;
 };
 

@@ -1,0 +1,86 @@
+#include "app/recording.hpp"
+
+#include <charconv>
+
+#include "evo/core/error.hpp"
+#include "evo/io/calibration_io.hpp"
+#include "evo/io/sequence.hpp"
+
+namespace evo::app {
+
+namespace {
+
+std::optional<ImageSize> ParseSensor(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  ImageSize size;
+  const char* const end = text.data() + text.size();
+  const auto [x, width_failure] = std::from_chars(text.data(), end, size.width);
+  if (width_failure == std::errc() && x != end && *x == 'x') {
+    const auto [last, height_failure] = std::from_chars(x + 1, end, size.height);
+    if (height_failure == std::errc() && last == end && size.width > 0 && size.height > 0) return size;
+  }
+  throw Error(ErrorKind::kUsage, "--sensor: '" + text + "' is not a size in pixels such as 240x180");
+}
+
+TimeNs ParseSeconds(const std::string& option, const std::string& text) {
+  const auto seconds = ParseTime(text);
+  if (!seconds || *seconds < 0) {
+    throw Error(ErrorKind::kUsage, option + ": '" + text + "' is not a number of seconds after the first event");
+  }
+  return *seconds;
+}
+
+Interval ParseInterval(const RecordingArguments& arguments) {
+  Interval interval{ParseSeconds("--from", arguments.from), std::nullopt};
+  if (!arguments.to.empty()) interval.to = ParseSeconds("--to", arguments.to);
+  if (interval.to && *interval.to <= interval.from) throw Error(ErrorKind::kUsage, "--to must be greater than --from");
+  return interval;
+}
+
+}  // namespace
+
+void AddSensorOption(CLI::App& command, std::string& sensor) {
+  command.add_option("--sensor", sensor, "size of the sensor in px, if the calibration does not tell; default 240x180")
+      ->type_name("WxH");
+}
+
+void AddRecordingOptions(CLI::App& command, RecordingArguments& arguments) {
+  command
+      .add_option("--events", arguments.events,
+                  "MVSEC .hdf5 (left camera), UZH events.txt, or the folder of a sequence with either")
+      ->required()
+      ->type_name("PATH");
+  command
+      .add_option("--calibration", arguments.calibration,
+                  "Kalibr camchain YAML or UZH calib.txt; default: the one in the sequence's folder")
+      ->type_name("FILE");
+  AddSensorOption(command, arguments.sensor);
+  command.add_option("--from", arguments.from, "begin this many seconds after the first event")
+      ->capture_default_str()
+      ->type_name("S");
+  command.add_option("--to", arguments.to, "end this many seconds after the first event; default: at the last")
+      ->type_name("S");
+}
+
+Camera OpenCamera(const std::filesystem::path& calibration, const std::string& sensor) {
+  return Camera(ReadCalibration(calibration, ParseSensor(sensor)));
+}
+
+Recording OpenRecording(const RecordingArguments& arguments, RunRecord* record) {
+  const Interval interval = ParseInterval(arguments);
+  const SequenceFiles files = FindSequence(arguments.events);
+  std::filesystem::path calibration = arguments.calibration;
+  if (calibration.empty()) {
+    if (!files.calibration) {
+      throw Error(ErrorKind::kUsage, arguments.events + ": no calibration comes with it; give one with --calibration");
+    }
+    calibration = *files.calibration;
+  }
+  Camera camera = OpenCamera(calibration, arguments.sensor);
+  auto reader = OpenEvents(files.events, interval, camera.width(), camera.height());
+  record->AddInput("events", files.events);
+  record->AddInput("calibration", calibration);
+  return {std::move(camera), std::move(reader), files.ground_truth};
+}
+
+}  // namespace evo::app

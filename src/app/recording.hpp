@@ -1,0 +1,41 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "app/run_record.hpp"
+#include "evo/geometry/camera.hpp"
+#include "evo/io/event_reader.hpp"
+
+namespace evo::app {
+
+/// What the user says about a recording of events.
+struct RecordingArguments {
+  std::string events;
+  std::string calibration;
+  std::string sensor;
+  std::string from = "0";
+  std::string to;
+};
+
+/// --events, --calibration, --sensor, --from and --to.
+void AddRecordingOptions(CLI::App& command, RecordingArguments& arguments);
+
+/// A camera from --calibration and --sensor. Throws Error.
+Camera OpenCamera(const std::filesystem::path& calibration, const std::string& sensor);
+/// --sensor, for commands without events.
+void AddSensorOption(CLI::App& command, std::string& sensor);
+
+/// A recording that has been found and whose beginning has been read.
+struct Recording {
+  Camera camera;
+  std::unique_ptr<EventReader> reader;
+  std::optional<std::filesystem::path> ground_truth;  ///< found beside the events
+};
+
+/// Finds the files, reads the calibration, opens the events and notes both in `record`. Throws Error.
+Recording OpenRecording(const RecordingArguments& arguments, RunRecord* record);
+
+}  // namespace evo::app

@@ -1,0 +1,151 @@
+#include "app/stages.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <cstdio>
+#include <set>
+
+#include "evo/core/progress.hpp"
+#include "evo/io/trajectory_io.hpp"
+#include "evo/odometry/map_writer.hpp"
+#include "evo/report/draw.hpp"
+#include "evo/report/figures.hpp"
+#include "evo/report/png.hpp"
+#include "evo/report/tables.hpp"
+
+namespace evo::app {
+
+namespace {
+
+constexpr int kZoom = 3;
+constexpr TimeNs kDrawnEvents = 10'000'000;  // an exposure that shows edges about as sharp as the tracker sees them
+
+template <typename... Values>
+std::string Format(const char* format, Values... values) {
+  char line[160];
+  std::snprintf(line, sizeof line, format, values...);
+  return line;
+}
+
+void DrawFrame(const std::filesystem::path& folder, const TrackingView& view, TimeNs first) {
+  EventColumns events;
+  view.history.ForEachBetween(
+      view.t - kDrawnEvents / 2, view.t + kDrawnEvents / 2, [&](int x, int y, TimeNs t, std::int8_t polarity) {
+        events.push_back(t, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), polarity);
+      });
+  Canvas canvas = DrawEvents(events, view.history.width(), view.history.height(), PolarityColors::kRedBlue, kZoom);
+  TrackDrawing drawing;
+  drawing.zoom = kZoom;
+  drawing.alive = 0;
+  DrawTracks(&canvas, view.tracks, view.t, drawing);
+  WritePng(folder / ("frame_" + Format("%08.3f", ToSeconds(view.t - first)) + "s.png"), canvas);
+}
+
+std::size_t CountIds(const Tracks& tracks) {
+  std::set<std::int64_t> ids;
+  for (const auto& observation : tracks) ids.insert(observation.id);
+  return ids.size();
+}
+
+}  // namespace
+
+void AddStageOptions(CLI::App& command, StageOptions& options) {
+  command.add_option("--out", options.out, "folder for the results")->required()->type_name("DIR");
+  command.add_flag("!--no-plots", options.plots, "write tables only");
+}
+
+void AddDrawingOption(CLI::App& command, StageOptions& options) {
+  command
+      .add_option("--draw-every", options.draw_every_s,
+                  "draw the event frame with its tracks into images/ every so many seconds")
+      ->check(CLI::PositiveNumber)
+      ->type_name("S");
+}
+
+std::vector<std::string> TrackingResultNames() { return {"tracks.txt", "lifetime.csv"}; }
+
+TrackingOutcome RunTrackingStage(const StageContext& context, Recording* recording) {
+  const TimeNs first = recording->reader->first_stamp();
+  TimeNs next_drawing = 0;
+  const auto observe = [&](const TrackingView& view) {
+    if (view.t < next_drawing) return;
+    DrawFrame(context.options.out / "images", view, first);
+    next_drawing = view.t + FromSeconds(context.options.draw_every_s);
+  };
+  TrackingOutcome outcome;
+  outcome.result = context.record->Time("track", [&] {
+    Progress progress("tracking", context.show_progress);
+    return TrackEvents(
+        recording->reader.get(), recording->camera.width(), recording->camera.height(), context.config.tracker,
+        context.pool, [&](double done) { progress.Update(done); },
+        context.options.draw_every_s > 0.0 ? observe : std::function<void(const TrackingView&)>{});
+  });
+  outcome.lifetimes = ComputeLifetimes(outcome.result.tracks, outcome.result.frames);
+  context.record->Time("write_tracks", [&] {
+    WriteTracks(context.options.out / "tracks.txt", outcome.result.tracks,
+                {"pixels of the raw sensor, each at the very instant of its stamp"});
+    WriteLifetimes(context.options.out / "lifetime.csv", outcome.lifetimes);
+    if (context.options.plots)
+      Gnuplot(context.options.out / "plots").Draw("lifetime", LifetimeFigure("lifetime", outcome.lifetimes));
+  });
+  context.record->AddCount("events", outcome.result.events);
+  context.record->AddCount("event_frames", outcome.result.frames.size());
+  context.record->AddCount("event_key_frames", outcome.result.key_frames);
+  context.record->AddCount("tracks", CountIds(outcome.result.tracks));
+  context.record->AddCount("track_observations", outcome.result.tracks.size());
+  return outcome;
+}
+
+std::vector<std::string> OdometryResultNames() { return {"trajectory.txt", "map.ply"}; }
+
+OdometryResult RunOdometryStage(const StageContext& context, const Tracks& tracks, const Camera& camera) {
+  OdometryResult result = context.record->Time("odometry", [&] {
+    Progress progress("odometry", context.show_progress);
+    return RunOdometry(tracks, camera, context.config.odometry, context.pool->size(),
+                       [&](double done) { progress.Update(done); });
+  });
+  for (const TimeNs t : result.lost) spdlog::debug("no pose at {} s", FormatTime(t));
+  for (std::size_t i = 1; i < result.bootstraps.size(); ++i) {
+    spdlog::warn("tracking was lost; started anew at {} s", FormatTime(result.bootstraps[i]));
+    context.record->manifest.rebootstraps.push_back(result.bootstraps[i]);
+  }
+  context.record->Time("write_trajectory", [&] {
+    WriteTum(context.options.out / "trajectory.txt", result.trajectory);
+    WriteMap(result.points, context.options.out / "map.ply");
+  });
+  context.record->AddCount("frames", static_cast<std::size_t>(result.frames));
+  context.record->AddCount("key_frames", static_cast<std::size_t>(result.key_frames));
+  context.record->AddCount("poses", result.trajectory.size());
+  context.record->AddCount("frames_lost", result.lost.size());
+  context.record->AddCount("map_points", result.points.size());
+  return result;
+}
+
+std::string FormatTracking(const TrackingOutcome& outcome) {
+  const auto& lifetimes = outcome.lifetimes;
+  const auto frames = std::max<std::size_t>(1, outcome.result.frames.size());
+  return Format("tracking   %zu events, %zu event frames, %.0f live features\n", outcome.result.events,
+                outcome.result.frames.size(),
+                static_cast<double>(outcome.result.tracks.size()) / static_cast<double>(frames)) +
+         Format("lifetime   %.1f +- %.1f frames, %.2f +- %.2f s (%lld tracks)\n", lifetimes.in_frames.mean,
+                lifetimes.in_frames.standard_deviation, lifetimes.in_seconds.mean,
+                lifetimes.in_seconds.standard_deviation, static_cast<long long>(lifetimes.tracks));
+}
+
+std::string FormatOdometry(const OdometryResult& result) {
+  return Format("odometry   %zu poses of %d frames, %d key frames, %zu points, started anew %zu times\n",
+                result.trajectory.size(), result.frames, result.key_frames, result.points.size(),
+                result.bootstraps.empty() ? std::size_t{0} : result.bootstraps.size() - 1);
+}
+
+std::string FormatSpeed(const TrackingResult& tracking, const Manifest& manifest, int threads) {
+  double seconds = 0.0;
+  for (const auto& stage : manifest.stages) {
+    if (stage.stage == "track" || stage.stage == "odometry") seconds += stage.seconds;
+  }
+  const double recorded = ToSeconds(tracking.frames.back() - tracking.frames.front());
+  return Format("speed      %.1f s of events in %.1f s on %d threads: %.1f x real time\n", recorded, seconds, threads,
+                recorded / seconds);
+}
+
+}  // namespace evo::app
