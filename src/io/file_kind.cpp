@@ -22,12 +22,11 @@ bool IsBinary(std::string_view text) {
 }
 
 FileKind KindOfRow(std::string_view line) {
-  const auto fields = SplitFields(line);
+  const bool commas = line.find(',') != std::string_view::npos;
+  const auto fields = commas ? SplitAtCommas(line) : SplitFields(line);
   const auto is_number = [](std::string_view field) { return ParseFinite(field).has_value(); };
   if (!std::ranges::all_of(fields, is_number)) return FileKind::kOtherText;
-  if (line.find(',') != std::string_view::npos) {
-    return fields.size() == 5 ? FileKind::kTrackText : FileKind::kOtherText;
-  }
+  if (commas) return fields.size() == 5 ? FileKind::kTrackText : FileKind::kOtherText;
   if (fields.size() == 8) return FileKind::kTrajectoryText;
   if (fields.size() == 9) return FileKind::kCalibrationText;
   if (fields.size() != 4) return FileKind::kOtherText;

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "io/lzf_filter.hpp"
+
 namespace evo::hdf5 {
 
 namespace {
 
 constexpr hid_t kDefault = H5P_DEFAULT;
-constexpr H5Z_filter_t kLzfFilter = 32000;  // h5py's, which MVSEC's images use
 constexpr std::size_t kListedNames = 8;
 constexpr std::size_t kCacheSlots = 521;  // HDF5's own default
 
@@ -18,11 +19,6 @@ herr_t CollectDataset(hid_t group, const char* name, const H5L_info_t*, void* na
     static_cast<std::vector<std::string>*>(names)->emplace_back(name);
   }
   return 0;  // a dangling link is no reason to give up on the rest
-}
-
-std::string FilterRemedy(H5Z_filter_t filter) {
-  if (filter == kLzfFilter) return "install the package hdf5-plugin-lzf";
-  return "install the HDF5 plugin for it and name its folder in HDF5_PLUGIN_PATH";
 }
 
 }  // namespace
@@ -54,6 +50,7 @@ std::string LastFailure() {
 
 File::File(const std::filesystem::path& path) : path_(path.string()) {
   Silence();
+  RegisterLzf();
   id_ = Handle(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, kDefault), H5Fclose);
   if (!id_.valid()) {
     throw Error(ErrorKind::kInput,
@@ -120,9 +117,9 @@ void Dataset::CheckFilters(hid_t creation) const {
     const H5Z_filter_t filter =
         H5Pget_filter2(creation, static_cast<unsigned>(i), &flags, &parameters, nullptr, sizeof label, label, &config);
     if (H5Zfilter_avail(filter) > 0) continue;
-    const std::string known = filter == kLzfFilter ? "lzf" : label;
-    throw Failure(": compressed with the HDF5 filter " + std::to_string(filter) +
-                  (known.empty() ? "" : " (" + known + ")") + ", which is not installed; " + FilterRemedy(filter));
+    const std::string name = *label ? " (" + std::string(label) + ")" : "";
+    throw Failure(": compressed with the HDF5 filter " + std::to_string(filter) + name +
+                  ", which is not installed; install its HDF5 plugin and name the folder in HDF5_PLUGIN_PATH");
   }
 }
 

@@ -22,6 +22,7 @@ constexpr double kLastEpochS = 8e9;   // 2223
 TimeNs SecondsToNs(double seconds) {
   auto whole = static_cast<TimeNs>(seconds);
   whole -= static_cast<double>(whole) > seconds ? 1 : 0;
+  // NOLINTNEXTLINE(bugprone-incorrect-roundings): the rest is not negative, and lround is a call for each event
   return whole * kNsPerSecond + static_cast<TimeNs>((seconds - static_cast<double>(whole)) * 1e9 + 0.5);
 }
 

@@ -16,7 +16,8 @@ constexpr unsigned kDeflateLevel = 4;
 
 /// The double nearest to the stamp: a plain product would round an epoch stamp twice.
 double NearestSeconds(TimeNs t) {
-  return static_cast<double>(t / kNsPerSecond) + static_cast<double>(t % kNsPerSecond) / 1e9;
+  const TimeNs whole = t / kNsPerSecond;
+  return static_cast<double>(whole) + static_cast<double>(t - whole * kNsPerSecond) / 1e9;
 }
 
 /// A file being written, with the groups davis/left.

@@ -164,7 +164,7 @@ class TextEventReader : public EventReader {
     }
     block->resize(count);
     length_ = static_cast<std::size_t>(std::min(p, end) - buffer_.data());
-    if (!valid) throw FirstFault();
+    if (!valid) ThrowFirstFault();
   }
 
   /// Moves `*p` to the next line; false if this one is blank or a comment.
@@ -180,22 +180,22 @@ class TextEventReader : public EventReader {
     return parsed.has_value();
   }
 
-  /// Why the block in buffer_, whose lines all parse, is refused.
-  Error FirstFault() const {
+  /// Throws at the first event in buffer_ that is not valid; all its lines parse.
+  void ThrowFirstFault() const {
     TimeNs previous = previous_;
     const char* const end = buffer_.data() + length_;
     for (const char* p = buffer_.data(); p < end;) {
       const std::int64_t offset = offset_ + (p - buffer_.data());
       TextEvent event;
       if (!ParseRareLine(&p, &event)) continue;
-      if (event.t < previous) return Failure(offset, BackwardsMessage(previous, event.t));
+      if (event.t < previous) throw Failure(offset, BackwardsMessage(previous, event.t));
       if (event.x < 0 || event.x >= width_ || event.y < 0 || event.y >= height_) {
-        return Failure(offset,
-                       OffSensorMessage(static_cast<double>(event.x), static_cast<double>(event.y), width_, height_));
+        const auto x = static_cast<double>(event.x);
+        const auto y = static_cast<double>(event.y);
+        throw Failure(offset, OffSensorMessage(x, y, width_, height_));
       }
       previous = event.t;
     }
-    return Failure(offset_, "not valid");
   }
 
   ByteSource file_;

@@ -40,18 +40,20 @@ Error TextLines::Failure(std::size_t number, const std::string& what) const {
 
 std::vector<std::string_view> SplitFields(std::string_view line) {
   std::vector<std::string_view> fields;
-  if (line.find(',') != std::string_view::npos) {
-    for (std::size_t start = 0; start <= line.size();) {
-      const std::size_t comma = std::min(line.find(',', start), line.size());
-      fields.push_back(Trim(line.substr(start, comma - start)));
-      start = comma + 1;
-    }
-    return fields;
-  }
   for (line = Trim(line); !line.empty(); line = Trim(line)) {
     const std::size_t end = std::min(line.find_first_of(" \t"), line.size());
     fields.push_back(line.substr(0, end));
     line.remove_prefix(end);
+  }
+  return fields;
+}
+
+std::vector<std::string_view> SplitAtCommas(std::string_view line) {
+  std::vector<std::string_view> fields;
+  for (std::size_t start = 0; start <= line.size();) {
+    const std::size_t comma = std::min(line.find(',', start), line.size());
+    fields.push_back(Trim(line.substr(start, comma - start)));
+    start = comma + 1;
   }
   return fields;
 }

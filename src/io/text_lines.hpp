@@ -33,8 +33,11 @@ class TextLines {
   std::size_t number_ = 0;
 };
 
-/// Cuts a line at blanks and tabs (any number of them), or at each comma if it holds one.
+/// Cuts a line at blanks and tabs, any number of them.
 std::vector<std::string_view> SplitFields(std::string_view line);
+
+/// Cuts a line at each comma; the fields have no blanks around them.
+std::vector<std::string_view> SplitAtCommas(std::string_view line);
 
 /// Without blanks and \r at either end.
 std::string_view Trim(std::string_view text);

@@ -35,7 +35,7 @@ std::int64_t ParseId(const TextLines& lines, std::string_view text) {
 }
 
 TrackObservation ParseRow(const TextLines& lines, std::string_view line, bool haste) {
-  const auto fields = SplitFields(line);
+  const auto fields = haste ? SplitAtCommas(line) : SplitFields(line);
   if (fields.size() != (haste ? 5u : 4u)) {
     throw lines.Failure(std::string("expected ") + (haste ? "'t,x,y,theta,id'" : "'id t x y'") + ", found " +
                         Quote(line));
