@@ -1,5 +1,3 @@
-#include <spdlog/spdlog.h>
-
 #include <iostream>
 #include <memory>
 
@@ -56,7 +54,7 @@ void RunEvaluate(const EvaluateArguments& arguments, const std::vector<std::stri
 
   auto results = EvaluationResultNames(alignments);
   results.emplace_back("manifest.json");
-  PrepareOutputFolder(arguments.out, results, arguments.common.force);
+  CheckOutputFolder(arguments.out, results, arguments.common.force);
   const InterruptGuard guard(arguments.out);
   RunRecord record(command_line, config.parameters);
   record.AddInput("estimate", arguments.estimate);
@@ -66,12 +64,10 @@ void RunEvaluate(const EvaluateArguments& arguments, const std::vector<std::stri
   Trajectory truth;
   record.Time("read", [&] {
     estimate = ReadTum(arguments.estimate);
-    truth = ReadGroundTruth(arguments.ground_truth, arguments.common.ground_truth_source);
+    truth = ReadGroundTruth(arguments.ground_truth, arguments.common.Source());
   });
   const auto evaluation =
       record.Time("evaluate", [&] { return Evaluate(truth, estimate, alignments, interval, config.evaluation); });
-  spdlog::debug("up in the world of the ground truth: {} {} {}", evaluation.up.x(), evaluation.up.y(),
-                evaluation.up.z());
   const std::string sequence = arguments.sequence.empty() ? SequenceName(arguments.ground_truth) : arguments.sequence;
   record.Time("write", [&] { WriteEvaluationResults(arguments.out, sequence, evaluation, !arguments.no_plots); });
 

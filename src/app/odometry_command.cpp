@@ -29,7 +29,7 @@ void RunOdometryCommand(const OdometryArguments& arguments, const std::vector<st
   const Tracks tracks = record.Time("read", [&] { return ReadTracks(arguments.tracks); });
   record.AddInput("tracks", arguments.tracks);
   record.AddInput("calibration", arguments.calibration);
-  PrepareOutputFolder(arguments.stage.out, results, arguments.common.force);
+  CheckOutputFolder(arguments.stage.out, results, arguments.common.force);
   const InterruptGuard guard(arguments.stage.out);
   ThreadPool pool(arguments.common.threads);
   const StageContext context{config, &pool, &record, arguments.stage, !arguments.common.quiet};

@@ -1,7 +1,5 @@
 #include "app/options.hpp"
 
-#include <map>
-
 #include "evo/core/logging.hpp"
 
 namespace evo::app {
@@ -10,6 +8,10 @@ void CommonOptions::Apply(Config* config) const {
   SetUpLogging(quiet ? -1 : verbose);
   if (!config_file.empty()) config->parameters.LoadFile(config_file);
   for (const auto& setting : settings) config->parameters.Set(setting);
+}
+
+GroundTruthSource CommonOptions::Source() const {
+  return ground_truth_source == "loam" ? GroundTruthSource::kLoam : GroundTruthSource::kCartographer;
 }
 
 void AddConfigurationOptions(CLI::App& command, CommonOptions& options) {
@@ -30,12 +32,11 @@ void AddComputeOptions(CLI::App& command, CommonOptions& options) {
 }
 
 void AddGroundTruthSourceOption(CLI::App& command, CommonOptions& options) {
-  const std::map<std::string, GroundTruthSource> sources{{"loam", GroundTruthSource::kLoam},
-                                                         {"cartographer", GroundTruthSource::kCartographer}};
   command
       .add_option("--ground-truth-source", options.ground_truth_source,
-                  "which trajectory of an MVSEC ground truth file: loam (default) or cartographer")
-      ->transform(CLI::CheckedTransformer(sources).description(""))
+                  "which trajectory of an MVSEC ground truth file")
+      ->check(CLI::IsMember({"loam", "cartographer"}).description(""))
+      ->capture_default_str()
       ->type_name("loam|cartographer");
 }
 

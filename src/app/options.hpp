@@ -16,12 +16,13 @@ struct CommonOptions {
   std::vector<std::string> settings;
   int threads = 0;  ///< 0: one for each processor
   bool force = false;
-  GroundTruthSource ground_truth_source = GroundTruthSource::kLoam;
+  std::string ground_truth_source = "loam";
   int verbose = 0;
   bool quiet = false;
 
   /// Starts the log and reads the configuration: defaults, then the file, then the settings.
   void Apply(Config* config) const;
+  GroundTruthSource Source() const;
 };
 
 /// --config, --set, -v and -q.

@@ -26,7 +26,7 @@ std::optional<Trajectory> OpenGroundTruth(const RunArguments& arguments, const R
   std::filesystem::path path = arguments.ground_truth;
   if (path.empty() && recording.ground_truth) path = *recording.ground_truth;
   if (path.empty()) return std::nullopt;
-  Trajectory truth = ReadGroundTruth(path, arguments.common.ground_truth_source);
+  Trajectory truth = ReadGroundTruth(path, arguments.common.Source());
   record->AddInput("ground_truth", path);
   return truth;
 }
@@ -44,7 +44,7 @@ void RunAll(const RunArguments& arguments, const std::vector<std::string>& comma
   for (const auto& name : OdometryResultNames()) results.push_back(name);
   for (const auto& name : EvaluationResultNames(alignments)) results.push_back(name);
   results.emplace_back("manifest.json");
-  PrepareOutputFolder(arguments.stage.out, results, arguments.common.force);
+  CheckOutputFolder(arguments.stage.out, results, arguments.common.force);
   const InterruptGuard guard(arguments.stage.out);
   ThreadPool pool(arguments.common.threads);
   const StageContext context{config, &pool, &record, arguments.stage, !arguments.common.quiet};

@@ -24,7 +24,7 @@ void RunTrack(const TrackArguments& arguments, const std::vector<std::string>& c
   results.emplace_back("manifest.json");
   RunRecord record(command_line, config.parameters);
   Recording recording = OpenRecording(arguments.recording, &record);
-  PrepareOutputFolder(arguments.stage.out, results, arguments.common.force);
+  CheckOutputFolder(arguments.stage.out, results, arguments.common.force);
   const InterruptGuard guard(arguments.stage.out);
   ThreadPool pool(arguments.common.threads);
   const StageContext context{config, &pool, &record, arguments.stage, !arguments.common.quiet};

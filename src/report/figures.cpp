@@ -136,7 +136,7 @@ Figure ErrorFigure(const std::string& name, const Evaluation& evaluation, const 
     }
   }
   time.WidenTo(1e-3);
-  meters.WidenTo(std::max(1.1 * meters.length(), 1e-6));
+  meters.WidenTo(std::max(1.1 * meters.length(), 1e-3));  // gnuplot refuses an empty range
 
   std::ostringstream script;
   script << kStyle << "set xrange " << time << "\n"

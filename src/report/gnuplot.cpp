@@ -92,7 +92,7 @@ std::string RunGnuplot(const fs::path& folder, const std::string& script, const 
   const int failure = ::posix_spawnp(&child, program.c_str(), &actions, &attributes, arguments, environ);
   ::posix_spawn_file_actions_destroy(&actions);
   ::posix_spawnattr_destroy(&attributes);
-  if (failure) return failure == ENOENT ? "gnuplot is not installed" : std::strerror(failure);
+  if (failure) return failure == ENOENT ? "gnuplot is not installed; install gnuplot-nox" : std::strerror(failure);
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
@@ -127,8 +127,7 @@ void Gnuplot::Draw(const std::string& name, const Figure& figure) {
   const std::string failure = RunGnuplot(work.path(), name + ".gp", "log");
   if (!failure.empty()) {
     available_ = false;
-    spdlog::warn("no plots in {}: {}; install gnuplot-nox and run 'gnuplot {}.gp' there", folder_.string(), failure,
-                 name);
+    spdlog::warn("no plots in {}: {}; 'gnuplot {}.gp' there draws them later", folder_.string(), failure, name);
     return;
   }
   WriteText(folder_ / (name + ".svg"), ReadText(work.path() / (name + ".svg")));

@@ -93,6 +93,13 @@ std::string Short(double value, int decimals) {
   return buffer;
 }
 
+/// "-y" for the unit vector (0, -1, 0).
+std::string AxisName(const Eigen::Vector3d& axis) {
+  Eigen::Index largest = 0;
+  axis.cwiseAbs().maxCoeff(&largest);
+  return std::string(axis[largest] < 0.0 ? "-" : "") + "xyz"[largest];
+}
+
 }  // namespace
 
 std::vector<TableRow> SummaryRows(const std::string& sequence, const Evaluation& evaluation) {
@@ -170,7 +177,7 @@ std::string FormatSummary(const Evaluation& evaluation) {
   std::string table;
   table += "path " + Short(evaluation.path_m, 2) + " m, " + Short(ToSeconds(evaluation.to - evaluation.from), 2) +
            " s, coverage " + Short(100.0 * evaluation.coverage, 1) + " %, gaps " + std::to_string(evaluation.gaps) +
-           "\n";
+           ", up " + AxisName(evaluation.up) + "\n";
   AppendLine(&table, {"alignment", "scale", "poses", "longitud.", "lateral", "planar", "planar", "planar max",
                       "planar end", "APE rmse"});
   AppendLine(&table, {"", "", "", "mean m", "mean m", "mean m", "mean %", "m", "m", "m"});

@@ -105,7 +105,7 @@ TEST_F(TablesTest, TerminalTableLinesUp) {
   std::vector<std::string> table;
   for (std::string line; std::getline(lines, line);) table.push_back(line);
   ASSERT_EQ(table.size(), 5u);
-  EXPECT_EQ(table[0], "path 100.00 m, 10.00 s, coverage 90.0 %, gaps 1");
+  EXPECT_EQ(table[0], "path 100.00 m, 10.00 s, coverage 90.0 %, gaps 1, up -y");
   for (std::size_t i = 2; i < table.size(); ++i) EXPECT_EQ(table[i].size(), table[1].size());
   EXPECT_TRUE(table[4].starts_with("origin "));
 }

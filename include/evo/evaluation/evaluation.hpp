@@ -64,7 +64,7 @@ struct Evaluation {
   TimeNs from = 0;  ///< the interval judged
   TimeNs to = 0;
   Trajectory truth;        ///< the truth within it
-  Eigen::Vector3d up;      ///< unit vector in the truth's world frame
+  Eigen::Vector3d up;      ///< unit vector along an axis of the truth's world frame
   double path_m = 0.0;     ///< length of the truth from the first pair to the last
   double coverage = 0.0;   ///< share of the interval outside gaps, in [0, 1]
   TimeNs longest_gap = 0;  ///< a stretch of the interval without a pose that is longer is a gap

@@ -1,0 +1,148 @@
+// The program as users call it: exit codes, the one line on stderr, the files it leaves.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace evo {
+namespace {
+
+namespace fs = std::filesystem;
+
+class CommandLineTest : public ::testing::Test {
+ protected:
+  void SetUp() override { fs::create_directories(folder); }
+  void TearDown() override { fs::remove_all(folder); }
+
+  /// Runs evo-run with shell words; fills out and err.
+  int Run(const std::string& words) {
+    const std::string command = std::string("'") + EVO_RUN + "' " + words + " >'" + (folder / "stdout").string() +
+                                "' 2>'" + (folder / "stderr").string() + "'";
+    const int status = std::system(command.c_str());
+    out = ReadFile(folder / "stdout");
+    err = ReadFile(folder / "stderr");
+    return WEXITSTATUS(status);
+  }
+
+  /// As Run, and the error must be one line.
+  int Refusal(const std::string& words) {
+    const int code = Run(words);
+    EXPECT_TRUE(err.starts_with("evo-run: error: ")) << err;
+    EXPECT_EQ(std::ranges::count(err, '\n'), 1) << err;
+    EXPECT_EQ(out, "");
+    return code;
+  }
+
+  static std::string ReadFile(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  static std::string Data(const std::string& name) {
+    return std::string("'") + EVO_SOURCE_DIR + "/tests/evaluation/data/" + name + "'";
+  }
+
+  std::string Evaluate(const std::string& estimate, const std::string& truth, const std::string& more = "") {
+    return "evaluate --no-plots --estimate " + Data(estimate) + " --ground-truth " + Data(truth) + " --out '" +
+           (folder / "result").string() + "' " + more;
+  }
+
+  fs::path folder = fs::temp_directory_path() / ("evo_command_line_test_" + std::to_string(::getpid()));
+  std::string out;
+  std::string err;
+};
+
+TEST_F(CommandLineTest, HelpShowsAnExampleOfEveryCommand) {
+  EXPECT_EQ(Run("--help"), 0);
+  for (const char* command : {"evaluate", "config"}) {
+    EXPECT_NE(out.find(command), std::string::npos);
+    ASSERT_EQ(Run(std::string(command) + " --help"), 0);
+    EXPECT_NE(out.find(std::string("Example:\n  evo-run ") + command), std::string::npos) << out;
+    EXPECT_EQ(Run("--help"), 0);
+  }
+  EXPECT_EQ(Run("--version"), 0);
+  EXPECT_TRUE(out.starts_with("evo-run "));
+}
+
+TEST_F(CommandLineTest, MistakesOfUsageEndWithTwo) {
+  for (const char* words : {"", "fly", "--fly", "config", "config --print --check x.yaml", "evaluate"}) {
+    EXPECT_EQ(Refusal(words), 2) << words;
+  }
+  EXPECT_EQ(Refusal(Evaluate("gt.txt", "gt.txt", "--align best")), 2);
+  EXPECT_EQ(Refusal(Evaluate("gt.txt", "gt.txt", "--up sideways")), 2);
+  EXPECT_EQ(Refusal(Evaluate("gt.txt", "gt.txt", "--ground-truth-source gps")), 2);
+  EXPECT_EQ(Refusal(Evaluate("gt.txt", "gt.txt", "--from-stamp soon")), 2);
+  EXPECT_EQ(Refusal(Evaluate("gt.txt", "gt.txt", "--from-stamp 5 --to-stamp 4")), 2);
+  EXPECT_EQ(Refusal(Evaluate("gt.txt", "gt.txt", "-v -q")), 2);
+  EXPECT_FALSE(fs::exists(folder / "result"));
+}
+
+TEST_F(CommandLineTest, MistakesOfConfigurationEndWithThree) {
+  EXPECT_EQ(Refusal(Evaluate("gt.txt", "gt.txt", "--set evaluation.chrod_m=2")), 3);
+  EXPECT_NE(err.find("evaluation.chord_m"), std::string::npos) << err;
+  const fs::path file = folder / "bad.yaml";
+  std::ofstream(file) << "evaluation:\n  gap_s: 1\n  chord_m: -1\n";
+  EXPECT_EQ(Refusal("config --check '" + file.string() + "'"), 3);
+  EXPECT_NE(err.find("bad.yaml:3"), std::string::npos) << err;
+}
+
+TEST_F(CommandLineTest, PrintedConfigurationPassesTheCheck) {
+  ASSERT_EQ(Run("config --print --set evaluation.chord_m=2.5"), 0);
+  EXPECT_NE(out.find("chord_m: 2.5"), std::string::npos);
+  std::ofstream(folder / "printed.yaml") << out;
+  EXPECT_EQ(Run("config --check '" + (folder / "printed.yaml").string() + "'"), 0);
+}
+
+TEST_F(CommandLineTest, BadInputsHaveCodesOfTheirOwn) {
+  EXPECT_EQ(Refusal(Evaluate("absent.txt", "gt.txt")), 4);
+  EXPECT_EQ(Refusal(Evaluate("reference.csv", "gt.txt")), 4);
+  EXPECT_EQ(Refusal(Evaluate("nooverlap.txt", "gt.txt")), 5);
+  EXPECT_EQ(
+      Refusal(Evaluate("est_drift.txt", "gt.txt", "--association nearest --set evaluation.max_difference_s=0.002")), 5);
+  for (const char* file : {"line.txt", "still.txt", "two.txt"}) {
+    EXPECT_EQ(Refusal(Evaluate(file, file, "--align se3")), 7) << file;
+  }
+  EXPECT_FALSE(fs::exists(folder / "result"));
+}
+
+TEST_F(CommandLineTest, EvaluateWritesItsTablesAndAManifest) {
+  ASSERT_EQ(Run(Evaluate("est_drift.txt", "gt.txt", "--align none,first:5 --association nearest --sequence drive")), 0)
+      << err;
+  EXPECT_NE(out.find("path 429.11 m"), std::string::npos) << out;
+  EXPECT_NE(ReadFile(folder / "result" / "summary.csv").find("\ndrive,none,1.000000000,586,"), std::string::npos);
+  EXPECT_TRUE(fs::exists(folder / "result" / "errors.csv"));
+  EXPECT_TRUE(fs::exists(folder / "result" / "errors_first-5.csv"));
+  EXPECT_EQ(nlohmann::json::parse(ReadFile(folder / "result" / "summary.json")).size(), 2u);
+  const auto manifest = nlohmann::json::parse(ReadFile(folder / "result" / "manifest.json"));
+  EXPECT_EQ(manifest["counts"]["matched_poses"], 586);
+  EXPECT_EQ(manifest["parameters"]["evaluation"]["association"], "nearest");
+  EXPECT_EQ(manifest["inputs"][0]["sha256"].get<std::string>().size(), 64u);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder / "result"), {}), 5);
+}
+
+TEST_F(CommandLineTest, EarlierResultsAreKeptUnlessForced) {
+  const std::string words = Evaluate("est_drift.txt", "gt.txt");
+  ASSERT_EQ(Run(words), 0) << err;
+  const std::string before = ReadFile(folder / "result" / "summary.csv");
+  EXPECT_EQ(Refusal(words + " --align none"), 8);
+  EXPECT_EQ(ReadFile(folder / "result" / "summary.csv"), before);
+  EXPECT_EQ(Run(words + " --force"), 0) << err;
+  EXPECT_EQ(ReadFile(folder / "result" / "summary.csv"), before);
+  EXPECT_EQ(Run(words + " --force --align none"), 0) << err;
+  EXPECT_NE(ReadFile(folder / "result" / "summary.csv"), before);
+}
+
+TEST_F(CommandLineTest, AnOutputFolderThatCannotBeIsRefusedBeforeWork) {
+  std::ofstream(folder / "result") << "a file";
+  EXPECT_EQ(Refusal(Evaluate("absent.txt", "gt.txt")), 8);
+}
+
+}  // namespace
+}  // namespace evo
