@@ -58,7 +58,6 @@ bool FeatureTracker::Track(const EventHistory& history, TimeNs t, TrackedFeature
 
 bool FeatureTracker::Align(const EventHistory& history, TimeNs t, TrackedFeature* feature) const {
   thread_local LocalEvents events;
-  thread_local AssociationField field;
   const Eigen::Vector2d predicted = feature->position + ToSeconds(t - *last_) * feature->flow;
   const TimeNs half_window = HalfWindow(feature->flow, options_.window_motion_px, options_);
   history.Gather({t, predicted.x(), predicted.y(), feature->flow.x(), feature->flow.y(),
@@ -68,26 +67,34 @@ bool FeatureTracker::Align(const EventHistory& history, TimeNs t, TrackedFeature
   events.Thin(static_cast<std::size_t>(options_.most_events));
 
   PatchMotion motion{Eigen::Vector2d::Zero(), feature->flow, feature->linear};
-  AlignmentOptions alignment{kCoarseIterations, static_cast<double>(options_.patch_radius_px), ToSeconds(half_window),
-                             options_.flow_prior, options_.affine_prior};
-  field.Build(feature->events, options_.coarse_sigma_px, options_.outlier_share);
-  AlignToTemplate(events, field, planes(), alignment, false, &motion);
-  alignment.iterations = options_.iterations;
-  field.Build(feature->events, options_.fine_sigma_px, options_.outlier_share);
-  const AlignmentQuality quality = AlignToTemplate(events, field, planes(), alignment, true, &motion);
-
-  if (quality.inlier_share < options_.fewest_inliers || quality.residual_px > options_.largest_residual_px)
-    return false;
-  if (motion.offset.norm() > options_.largest_jump_px) return false;
-  const double growth = std::sqrt(std::abs(motion.linear.determinant()));
-  const double scale = feature->scale * growth;
-  if (!(scale < options_.largest_scale && scale > 1.0 / options_.largest_scale)) return false;
-
+  if (!Fit(events, *feature, half_window, false, &motion)) {
+    // A jolt: the prediction may lie beyond the fine association's reach.
+    motion = {Eigen::Vector2d::Zero(), feature->flow, feature->linear};
+    if (!Fit(events, *feature, half_window, true, &motion)) return false;
+  }
   feature->position = predicted + motion.offset;
   feature->flow = motion.flow;
   feature->linear = motion.linear;
   UpdateTemplate(events, motion, feature);
   return true;
+}
+
+bool FeatureTracker::Fit(const LocalEvents& events, const TrackedFeature& feature, TimeNs half_window,
+                         bool coarse_first, PatchMotion* motion) const {
+  thread_local AssociationField field;
+  AlignmentOptions alignment{kCoarseIterations, static_cast<double>(options_.patch_radius_px), ToSeconds(half_window),
+                             options_.flow_prior, options_.affine_prior};
+  if (coarse_first) {
+    field.Build(feature.events, options_.coarse_sigma_px, options_.outlier_share);
+    AlignToTemplate(events, field, planes(), alignment, false, motion);
+  }
+  alignment.iterations = options_.iterations;
+  field.Build(feature.events, options_.fine_sigma_px, options_.outlier_share);
+  const AlignmentQuality quality = AlignToTemplate(events, field, planes(), alignment, true, motion);
+  const double scale = feature.scale * std::sqrt(std::abs(motion->linear.determinant()));
+  return quality.inlier_share >= options_.fewest_inliers && quality.residual_px <= options_.largest_residual_px &&
+         motion->offset.norm() <= options_.largest_jump_px && scale < options_.largest_scale &&
+         scale > 1.0 / options_.largest_scale;
 }
 
 void FeatureTracker::UpdateTemplate(const LocalEvents& events, const PatchMotion& motion,

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kCellPx = 24;
 constexpr double kNeighbourhoodPx = 40.0;  // features this near tell a cell its flow
-constexpr double kCautiousShare = 0.5;  // of a window's motion, while the flow comes from elsewhere
+constexpr double kCautiousShare = 0.5;     // of a window's motion, while the flow comes from elsewhere
 
 }  // namespace
 

@@ -44,6 +44,9 @@ class FeatureTracker {
   /// False if the feature is lost.
   bool Track(const EventHistory& history, TimeNs t, TrackedFeature* feature) const;
   bool Align(const EventHistory& history, TimeNs t, TrackedFeature* feature) const;
+  /// Aligns `events` to the feature's template from `motion`; false if they do not fit it.
+  bool Fit(const LocalEvents& events, const TrackedFeature& feature, TimeNs half_window, bool coarse_first,
+           PatchMotion* motion) const;
   void Refill(const EventHistory& history, TimeNs t);
   std::optional<TrackedFeature> Birth(const EventHistory& history, TimeNs t, const Eigen::Vector2d& position) const;
   void UpdateTemplate(const LocalEvents& events, const PatchMotion& motion, TrackedFeature* feature) const;

@@ -26,7 +26,7 @@ struct TrackerOptions {
   double outlier_share = 0.2;    ///< density of stray events over the patch's mean density of events
   int iterations = 20;           ///< at most, each EM
   double flow_prior = 20.0;      ///< weight, in events, of the predicted flow
-  double affine_prior = 50.0;    ///< weight, in events, of the previous affine shape
+  double affine_prior = 15.0;    ///< weight, in events, of the previous affine shape
   double template_gain = 0.1;    ///< share of the newest window in a template that has settled
   bool use_polarity = true;      ///< associate events only with template events of their own sign
 
