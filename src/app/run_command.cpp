@@ -1,5 +1,8 @@
+#include <spdlog/spdlog.h>
+
 #include <iostream>
 #include <memory>
+#include <span>
 
 #include "app/commands.hpp"
 #include "app/evaluation_results.hpp"
@@ -7,17 +10,20 @@
 #include "app/options.hpp"
 #include "app/output_folder.hpp"
 #include "app/stages.hpp"
+#include "evo/core/error.hpp"
 #include "evo/report/tables.hpp"
 
 namespace evo::app {
 
 namespace {
 
+constexpr const char* kUsualAlignments = "origin-scale,sim3";
+
 struct RunArguments {
   CommonOptions common;
   RecordingArguments recording;
   std::string ground_truth;
-  std::string align = "origin-scale,sim3";
+  std::string align;  ///< empty: the usual ones, as far as the motion determines them
   StageOptions stage;
 };
 
@@ -31,10 +37,41 @@ std::optional<Trajectory> OpenGroundTruth(const RunArguments& arguments, const R
   return truth;
 }
 
+/// Drops the alignments that these trajectories do not determine: a straight line, say, leaves sim3's roll open.
+void KeepDetermined(const Trajectory& truth, const Trajectory& estimate, const EvaluationInterval& interval,
+                    const EvaluationOptions& options, std::vector<Alignment>* alignments) {
+  std::erase_if(*alignments, [&](const Alignment& alignment) {
+    try {
+      Evaluate(truth, estimate, std::span(&alignment, 1), interval, options);
+      return false;
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::kDegenerateAlignment) throw;
+      spdlog::warn("left out of the report: {}", error.what());
+      return true;
+    }
+  });
+}
+
+void Judge(const StageContext& context, const Trajectory& truth, const Trajectory& estimate,
+           const std::vector<TimeNs>& frames, std::vector<Alignment> alignments, bool only_determined) {
+  // The truth of the whole interval counts: an estimate that covers a part of it must not look complete.
+  const EvaluationInterval interval{frames.front(), frames.back()};
+  const EvaluationOptions& options = context.config.evaluation;
+  if (only_determined) KeepDetermined(truth, estimate, interval, options, &alignments);
+  if (alignments.empty()) return;
+  const Evaluation evaluation =
+      context.record->Time("evaluate", [&] { return Evaluate(truth, estimate, alignments, interval, options); });
+  const auto& ground_truth = context.record->manifest.inputs.back().path;
+  context.record->Time("write_evaluation", [&] {
+    WriteEvaluationResults(context.options.out, SequenceName(ground_truth), evaluation, !context.options.no_plots);
+  });
+  std::cout << FormatSummary(evaluation);
+}
+
 void RunAll(const RunArguments& arguments, const std::vector<std::string>& command_line) {
   Config config;
   arguments.common.Apply(&config);
-  const auto alignments = ParseAlignments(arguments.align);
+  const auto alignments = ParseAlignments(arguments.align.empty() ? kUsualAlignments : arguments.align);
   RunRecord record(command_line, config.parameters);
   // Every input is opened before any work, so that a wrong one is reported at once.
   Recording recording = OpenRecording(arguments.recording, &record);
@@ -53,17 +90,7 @@ void RunAll(const RunArguments& arguments, const std::vector<std::string>& comma
   std::cout << FormatTracking(tracking) << std::flush;
   const OdometryResult odometry = RunOdometryStage(context, tracking.result.tracks, recording.camera);
   std::cout << FormatOdometry(odometry) << FormatSpeed(tracking.result, record.manifest, pool.size()) << std::flush;
-  if (truth) {
-    // The truth of the whole interval counts: an estimate that covers a part of it must not look complete.
-    const EvaluationInterval interval{tracking.result.frames.front(), tracking.result.frames.back()};
-    const Evaluation evaluation = record.Time(
-        "evaluate", [&] { return Evaluate(*truth, odometry.trajectory, alignments, interval, config.evaluation); });
-    const auto& ground_truth = record.manifest.inputs.back().path;
-    record.Time("write_evaluation", [&] {
-      WriteEvaluationResults(context.options.out, SequenceName(ground_truth), evaluation, context.options.plots);
-    });
-    std::cout << FormatSummary(evaluation);
-  }
+  if (truth) Judge(context, *truth, odometry.trajectory, tracking.result.frames, alignments, arguments.align.empty());
   WriteManifest(context.options.out / "manifest.json", record.manifest);
   std::cout << "results    " << context.options.out.string() << '\n';
 }
