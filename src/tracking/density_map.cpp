@@ -103,18 +103,12 @@ void AssociationField::Build(const DensityMap& map, double sigma_px, double outl
   const auto stray = static_cast<float>(std::max(1e-12, outlier_share * mean_density));
   const auto variance = static_cast<float>(sigma_px * sigma_px);
   const auto longest = static_cast<float>(kLongestPull * sigma_px);
-  const Eigen::ArrayXf lever =
-      Eigen::ArrayXf::LinSpaced(n - 2, static_cast<float>(1 - radius_), static_cast<float>(radius_ - 1));
-
-  own_moments_.setZero();
-  double own = 0.0;
   for (int p = 0; p < map.planes(); ++p) {
     Smooth(map.plane(p), sigma_px);
     for (int r = 1; r + 1 < n; ++r) {
       const auto density = [&](int dr, int dc) {
         return Eigen::Map<const Eigen::ArrayXf>(smooth_.data() + (r + dr) * n + 1 + dc, n - 2);
       };
-      const Eigen::Map<const Eigen::ArrayXf> votes(map.plane(p) + r * n + 1, n - 2);
       weight_ = density(0, 0) / (density(0, 0) + stray);
       y_ = 0.5f * variance / (density(0, 0) + 1e-3f * stray);
       x_ = y_ * (density(0, 1) - density(0, -1));
@@ -124,15 +118,34 @@ void AssociationField::Build(const DensityMap& map, double sigma_px, double outl
       y_ *= scale_;
       Pull* row = table_.data() + (p * n + r) * n + 1;
       for (int c = 0; c < n - 2; ++c) row[c] = Pull(weight_[c], x_[c], y_[c], 0.0f);
-      const double pull_x = (votes * x_).sum();
-      const double pull_y = (votes * y_).sum();
-      const double v = r - radius_;
-      own_moments_.row(0) += Eigen::RowVector3d(pull_x, (votes * x_ * lever).sum(), v * pull_x);
-      own_moments_.row(1) += Eigen::RowVector3d(pull_y, (votes * y_ * lever).sum(), v * pull_y);
-      own += (votes * weight_).sum();
     }
   }
-  if (own > 0.0) own_moments_ /= own;
+}
+
+Eigen::Matrix<double, 2, 3> AssociationField::OwnMoments(const DensityMap& map, const Eigen::Matrix2d& linear,
+                                                         double patch_radius_px) const {
+  const Eigen::Matrix2f l = linear.cast<float>();
+  const auto reach = static_cast<float>(patch_radius_px);
+  Eigen::Array4f sum = Eigen::Array4f::Zero(), sum_u = Eigen::Array4f::Zero(), sum_v = Eigen::Array4f::Zero();
+  for (int p = 0; p < map.planes(); ++p) {
+    const float* votes = map.plane(p);
+    const Pull* pulls = table_.data() + p * side_ * side_;
+    for (int r = 0, i = 0; r < side_; ++r) {
+      const auto v = static_cast<float>(r - radius_);
+      for (int c = 0; c < side_; ++c, ++i) {
+        const auto u = static_cast<float>(c - radius_);
+        if (std::abs(l(0, 0) * u + l(0, 1) * v) > reach || std::abs(l(1, 0) * u + l(1, 1) * v) > reach) continue;
+        const Pull pull = votes[i] * pulls[i];
+        sum += pull;
+        sum_u += u * pull;
+        sum_v += v * pull;
+      }
+    }
+  }
+  if (!(sum[0] > 0.0f)) return Eigen::Matrix<double, 2, 3>::Zero();
+  Eigen::Matrix<double, 2, 3> moments;
+  moments << sum[1], sum_u[1], sum_v[1], sum[2], sum_u[2], sum_v[2];
+  return moments / sum[0];
 }
 
 }  // namespace evo

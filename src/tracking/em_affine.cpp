@@ -69,8 +69,7 @@ AlignmentQuality AlignToTemplate(const LocalEvents& events, const AssociationFie
     if (!(moments.weight > 1.0)) return {};
     quality.inlier_share = moments.weight / static_cast<double>(events.size());
     quality.residual_px = std::sqrt(moments.squares / moments.weight);
-    // What a perfectly aligned window would feel is no reason to move.
-    const auto& own = field.own_moments();
+    const auto& own = options.own_moments;
     moments.pull.row(0) -= moments.weight * own.col(0).transpose();
     moments.pull.row(2) -= moments.weight / options.patch_radius_px * own.col(1).transpose();
     moments.pull.row(3) -= moments.weight / options.patch_radius_px * own.col(2).transpose();

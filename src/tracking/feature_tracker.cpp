@@ -82,15 +82,16 @@ bool FeatureTracker::Align(const EventHistory& history, TimeNs t, TrackedFeature
 bool FeatureTracker::Fit(const LocalEvents& events, const TrackedFeature& feature, TimeNs half_window,
                          bool coarse_first, PatchMotion* motion) const {
   thread_local AssociationField field;
-  AlignmentOptions alignment{kCoarseIterations, static_cast<double>(options_.patch_radius_px), ToSeconds(half_window),
-                             options_.flow_prior, options_.affine_prior};
-  if (coarse_first) {
-    field.Build(feature.events, options_.coarse_sigma_px, options_.outlier_share);
-    AlignToTemplate(events, field, planes(), alignment, false, motion);
-  }
-  alignment.iterations = options_.iterations;
-  field.Build(feature.events, options_.fine_sigma_px, options_.outlier_share);
-  const AlignmentQuality quality = AlignToTemplate(events, field, planes(), alignment, true, motion);
+  const auto align = [&](double sigma_px, int iterations, bool with_linear) {
+    const auto radius = static_cast<double>(options_.patch_radius_px);
+    field.Build(feature.events, sigma_px, options_.outlier_share);
+    return AlignToTemplate(events, field, planes(),
+                           {iterations, radius, ToSeconds(half_window), options_.flow_prior, options_.affine_prior,
+                            field.OwnMoments(feature.events, motion->linear, radius)},
+                           with_linear, motion);
+  };
+  if (coarse_first) align(options_.coarse_sigma_px, kCoarseIterations, false);
+  const AlignmentQuality quality = align(options_.fine_sigma_px, options_.iterations, true);
   const double scale = feature.scale * std::sqrt(std::abs(motion->linear.determinant()));
   return quality.inlier_share >= options_.fewest_inliers && quality.residual_px <= options_.largest_residual_px &&
          motion->offset.norm() <= options_.largest_jump_px && scale < options_.largest_scale &&

@@ -23,9 +23,10 @@ TimeNs HalfWindow(const Eigen::Vector2d& flow, double motion_px, const TrackerOp
 bool EstimateFlow(const EventHistory& history, TimeNs t, double x, double y, const TrackerOptions& options,
                   Eigen::Vector2d* flow) {
   thread_local LocalEvents events;
-  FlowEstimator estimator(options.patch_radius_px + 2, options.use_polarity ? 2 : 1);
+  FlowEstimator estimator(options.flow_patch_radius_px + 2, options.use_polarity ? 2 : 1);
   const auto gather = [&](TimeNs half_window) {
-    history.Gather({t, x, y, flow->x(), flow->y(), static_cast<double>(options.patch_radius_px), half_window}, &events);
+    history.Gather({t, x, y, flow->x(), flow->y(), static_cast<double>(options.flow_patch_radius_px), half_window},
+                   &events);
     events.Thin(static_cast<std::size_t>(options.most_events));
     return events.size() >= static_cast<std::size_t>(options.fewest_events);
   };

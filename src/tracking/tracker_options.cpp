@@ -6,6 +6,8 @@ void Register(Parameters& parameters, TrackerOptions& o) {
   parameters.Add("tracker.frame_interval_s", &o.frame_interval_s, 0.001, 1.0, "time between two event frames (s)");
   parameters.Add("tracker.features", &o.features, 8, 2000, "live features to aim at");
   parameters.Add("tracker.refill_below", &o.refill_below, 0.0, 1.0, "detect when fewer than this share is alive");
+  parameters.Add("tracker.flow_patch_radius_px", &o.flow_patch_radius_px, 5, 40,
+                 "half the side of the patch that tells a first flow (px)");
   parameters.Add("tracker.patch_radius_px", &o.patch_radius_px, 5, 40, "half the side of a feature's patch (px)");
   parameters.Add("tracker.window_motion_px", &o.window_motion_px, 0.5, 20.0, "motion within a feature's window (px)");
   parameters.Add("tracker.shortest_window_s", &o.shortest_window_s, 0.0005, 1.0, "of a feature's events (s)");

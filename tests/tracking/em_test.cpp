@@ -96,9 +96,10 @@ TEST(AlignToTemplate, RecoversAKnownAffineMotion) {
 
   PatchMotion motion;
   motion.flow = {80, -30};
-  AlignmentOptions options{20, 15.0, 0.02, 5.0, 5.0};
+  AlignmentOptions options{20, 15.0, 0.02, 5.0, 5.0, coarse.OwnMoments(map, Matrix2d::Identity(), 15.0)};
   AlignToTemplate(events, coarse, 2, options, false, &motion);
   options.iterations = 50;
+  options.own_moments = fine.OwnMoments(map, Matrix2d::Identity(), 15.0);
   const AlignmentQuality quality = AlignToTemplate(events, fine, 2, options, true, &motion);
   EXPECT_GT(quality.inlier_share, 0.7);
   EXPECT_LT(quality.residual_px, 1.0);
@@ -114,7 +115,9 @@ TEST(AlignToTemplate, LeavesAnAlignedWindowWhereItIs) {
   AssociationField field;
   field.Build(map, 1.0, 0.2);
   PatchMotion motion;
-  AlignToTemplate(events, field, 2, {50, 15.0, 0.01, 0.0, 0.0}, true, &motion);
+  const auto own = field.OwnMoments(map, Matrix2d::Identity(), 15.0);
+  EXPECT_LT(own(0, 1) + own(1, 2), -0.5);  // the inward pull that must not count
+  AlignToTemplate(events, field, 2, {50, 15.0, 0.01, 0.0, 0.0, own}, true, &motion);
   EXPECT_LT(motion.offset.norm(), 0.03);
   EXPECT_NEAR(std::sqrt(motion.linear.determinant()), 1.0, 0.005);
 }
@@ -128,7 +131,7 @@ TEST(AlignToTemplate, TellsForeignEventsFromItsOwn) {
   const LocalEvents own = PatchEvents({}, 0.01, 500, 3);
   const LocalEvents foreign = PatchEvents(elsewhere, 0.01, 500, 4);
   PatchMotion a, b;
-  const AlignmentOptions options{20, 15.0, 0.01, 20.0, 50.0};
+  const AlignmentOptions options{20, 15.0, 0.01, 20.0, 50.0, field.OwnMoments(map, Matrix2d::Identity(), 15.0)};
   EXPECT_GT(AlignToTemplate(own, field, 2, options, true, &a).inlier_share,
             1.5 * AlignToTemplate(foreign, field, 2, options, true, &b).inlier_share);
 }

@@ -77,8 +77,10 @@ class AssociationField {
   }
 
   /// The sums of pull x (1, u, v) that the map's own events feel, per unit of their weight: row 0 for the pull along x,
-  /// row 1 along y. They are not zero (the density is blurred), and are what a perfectly aligned window would feel too.
-  const Eigen::Matrix<double, 2, 3>& own_moments() const { return own_moments_; }
+  /// row 1 along y. They are not zero (a blurred density pulls inwards), and are what a perfectly aligned window would
+  /// feel too. Such a window sees the events at u with linear * u inside a square patch of `patch_radius_px`.
+  Eigen::Matrix<double, 2, 3> OwnMoments(const DensityMap& map, const Eigen::Matrix2d& linear,
+                                         double patch_radius_px) const;
 
  private:
   void Smooth(const float* plane, double sigma_px);
@@ -88,7 +90,6 @@ class AssociationField {
   std::vector<Pull> table_;  // per plane and cell
   std::vector<float> kernel_, rows_, smooth_;
   Eigen::ArrayXf weight_, x_, y_, scale_;  // of one row of cells
-  Eigen::Matrix<double, 2, 3> own_moments_ = Eigen::Matrix<double, 2, 3>::Zero();
 };
 
 }  // namespace evo

@@ -17,10 +17,12 @@ struct PatchMotion {
 
 struct AlignmentOptions {
   int iterations = 20;
-  double patch_radius_px = 15.0;
+  double patch_radius_px = 8.0;
   double half_window_s = 0.01;
   double flow_prior = 20.0;    ///< weight of the initial flow, in events
-  double affine_prior = 50.0;  ///< weight of the initial linear part, in events
+  double affine_prior = 10.0;  ///< weight of the initial linear part, in events
+  /// Of the field, see AssociationField: what an aligned window feels, no reason to move.
+  Eigen::Matrix<double, 2, 3> own_moments = Eigen::Matrix<double, 2, 3>::Zero();
 };
 
 struct AlignmentQuality {

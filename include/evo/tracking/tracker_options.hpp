@@ -10,7 +10,8 @@ struct TrackerOptions {
   double frame_interval_s = 0.02;  ///< time between two event frames
   int features = 150;              ///< live features to aim at
   double refill_below = 0.9;       ///< detect new ones when fewer than this share is alive: a key frame
-  int patch_radius_px = 15;        ///< half the side of a feature's patch: 31 x 31 px
+  int flow_patch_radius_px = 15;   ///< half the side of the patch that tells a first flow: 31 x 31 px
+  int patch_radius_px = 8;         ///< half the side of a feature's patch: 17 x 17 px; larger ones span more depths
 
   // The window of events around an event frame's stamp, chosen per feature.
   double window_motion_px = 4.0;  ///< the flow moves the feature this far within its window
@@ -26,7 +27,7 @@ struct TrackerOptions {
   double outlier_share = 0.2;    ///< density of stray events over the patch's mean density of events
   int iterations = 20;           ///< at most, each EM
   double flow_prior = 20.0;      ///< weight, in events, of the predicted flow
-  double affine_prior = 15.0;    ///< weight, in events, of the previous affine shape
+  double affine_prior = 10.0;    ///< weight, in events, of the previous affine shape
   double template_gain = 0.1;    ///< share of the newest window in a template that has settled
   bool use_polarity = true;      ///< associate events only with template events of their own sign
 
