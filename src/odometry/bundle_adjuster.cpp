@@ -1,6 +1,4 @@
 #include "evo/odometry/bundle_adjuster.hpp"
-#include <cstdio>
-#include <cstdlib>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -47,24 +45,6 @@ bool Error(const SE3& T_cam_anchor, const Eigen::Vector3d& inverse_depth, const 
   return true;
 }
 
-/// Weights and widths of the two kinds of terms that first-order correlated noise of unit variance splits into.
-struct NoiseModel {
-  explicit NoiseModel(const BundleOptions& options)
-      : end_weight(1.0 / (1.0 + options.correlation)),
-        inner_weight((1.0 - options.correlation) / (1.0 + options.correlation)),
-        link_weight(options.correlation / (1.0 - options.correlation * options.correlation)),
-        width(options.loss_px),
-        link_width(options.loss_px * std::sqrt(2.0 * (1.0 - options.correlation))) {}
-
-  double Weight(bool first, bool last) const { return first && last ? 1.0 : first || last ? end_weight : inner_weight; }
-
-  double end_weight;    // of an error at the track's beginning or end
-  double inner_weight;  // of an error between
-  double link_weight;   // of the difference of two neighbouring errors
-  double width;         // of the loss of an error
-  double link_width;    // of the loss of a difference
-};
-
 double ScaleLength(const BundleProblem& problem) {
   return (problem.T_cam_world[problem.scale_frame] * problem.T_cam_world.front().Inverse()).translation().norm();
 }
@@ -86,36 +66,28 @@ std::vector<std::size_t> FirstObservations(const BundleProblem& problem) {
   return begin;
 }
 
-/// What the sightings [begin, end) of one point cost.
-double PointCost(const BundleProblem& problem, const NoiseModel& noise, std::size_t begin, std::size_t end) {
+/// What the observations [begin, end) of one point cost.
+double PointCost(const BundleProblem& problem, double width, std::size_t begin, std::size_t end) {
+  if (begin == end) return 0.0;
   double cost = 0.0;
-  if (begin == end) return cost;
   const BundlePoint& point = problem.points[problem.observations[begin].point];
   const SE3 T_world_anchor = problem.T_cam_world[point.anchor].Inverse();
-  Eigen::Vector2d before = Eigen::Vector2d::Zero();
-  bool linked = false;
   for (std::size_t i = begin; i < end; ++i) {
     const auto& observation = problem.observations[i];
-    Eigen::Vector2d error = Eigen::Vector2d::Zero();
-    const bool visible =
-        Error(problem.T_cam_world[observation.frame] * T_world_anchor, point.inverse_depth, observation, &error);
-    const double squared = visible ? std::min(error.squaredNorm(), kBehindPx * kBehindPx) : kBehindPx * kBehindPx;
-    cost += noise.Weight(i == begin, i + 1 == end) * CauchyCost(squared, noise.width);
-    if (i > begin && noise.link_weight > 0.0) {
-      const double difference = visible && linked ? (error - before).squaredNorm() : kBehindPx * kBehindPx;
-      cost += noise.link_weight * CauchyCost(std::min(difference, kBehindPx * kBehindPx), noise.link_width);
-    }
-    before = error;
-    linked = visible;
+    const SE3 T_cam_anchor = problem.T_cam_world[observation.frame] * T_world_anchor;
+    Eigen::Vector2d error;
+    const bool visible = Error(T_cam_anchor, point.inverse_depth, observation, &error);
+    const double squared = visible ? error.squaredNorm() : kBehindPx * kBehindPx;
+    cost += CauchyCost(std::min(squared, kBehindPx * kBehindPx), width);
   }
   return cost;
 }
 
 /// A few damped steps of one point alone.
-double SettlePoint(const NoiseModel& noise, std::size_t begin, std::size_t end, BundleProblem* problem) {
+double SettlePoint(double width, std::size_t begin, std::size_t end, BundleProblem* problem) {
   BundlePoint& point = problem->points[problem->observations[begin].point];
   const SE3 T_world_anchor = problem->T_cam_world[point.anchor].Inverse();
-  double cost = PointCost(*problem, noise, begin, end);
+  double cost = PointCost(*problem, width, begin, end);
   double damping = kSettleDamping;
   for (int step = 0; step < kSettleSteps; ++step) {
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
@@ -125,7 +97,7 @@ double SettlePoint(const NoiseModel& noise, std::size_t begin, std::size_t end, 
       const auto& observation = problem->observations[i];
       const SE3 T_cam_anchor = problem->T_cam_world[observation.frame] * T_world_anchor;
       if (!Linearize(T_cam_anchor, point.inverse_depth, observation, &jacobian)) continue;
-      const double weight = CauchyWeight(jacobian.error.squaredNorm(), noise.width);
+      const double weight = CauchyWeight(jacobian.error.squaredNorm(), width);
       normal.noalias() += weight * jacobian.by_point.transpose() * jacobian.by_point;
       gradient.noalias() += weight * jacobian.by_point.transpose() * jacobian.error;
     }
@@ -133,7 +105,7 @@ double SettlePoint(const NoiseModel& noise, std::size_t begin, std::size_t end, 
     normal.diagonal().array() += 1e-12;
     const Eigen::Vector3d old = point.inverse_depth;
     point.inverse_depth -= normal.ldlt().solve(gradient);
-    const double stepped = PointCost(*problem, noise, begin, end);
+    const double stepped = PointCost(*problem, width, begin, end);
     if (stepped < cost) {
       cost = stepped;
       damping *= 0.1;
@@ -147,16 +119,16 @@ double SettlePoint(const NoiseModel& noise, std::size_t begin, std::size_t end, 
 
 /// All points' costs after a step. A point that the common step has made worse, one far away or nearly on the path,
 /// goes back and settles by itself, lest it hold up all the others.
-double CostAfterStep(const std::vector<BundlePoint>& old_points, const NoiseModel& noise,
-                     const std::vector<std::size_t>& begin, std::vector<double>* costs, BundleProblem* problem) {
+double CostAfterStep(const std::vector<BundlePoint>& old_points, double width, const std::vector<std::size_t>& begin,
+                     std::vector<double>* costs, BundleProblem* problem) {
   double sum = 0.0;
   for (std::size_t p = 0; p < costs->size(); ++p) {
     if (begin[p] == begin[p + 1]) continue;
-    double cost = PointCost(*problem, noise, begin[p], begin[p + 1]);
+    double cost = PointCost(*problem, width, begin[p], begin[p + 1]);
     if (cost > (*costs)[p]) {
       const BundlePoint stepped = std::exchange(problem->points[p], old_points[p]);
-      if (PointCost(*problem, noise, begin[p], begin[p + 1]) > cost) problem->points[p] = stepped;
-      cost = SettlePoint(noise, begin[p], begin[p + 1], problem);
+      if (PointCost(*problem, width, begin[p], begin[p + 1]) > cost) problem->points[p] = stepped;
+      cost = SettlePoint(width, begin[p], begin[p + 1], problem);
     }
     (*costs)[p] = cost;
     sum += cost;
@@ -167,36 +139,37 @@ double CostAfterStep(const std::vector<BundlePoint>& old_points, const NoiseMode
 /// The normal equations of one linearisation, the points' part kept apart.
 class NormalEquations {
  public:
-  NormalEquations(const BundleProblem& problem, const NoiseModel& noise, const std::vector<std::size_t>& begin,
+  NormalEquations(const BundleProblem& problem, double width, const std::vector<std::size_t>& begin,
                   double scale_length)
       : problem_(problem),
-        noise_(noise),
+        width_(width),
         begin_(begin),
         scale_length_(scale_length),
-        poses_(BundleSkyline(problem)),
-        reduced_(poses_),
+        reduced_(BundleSkyline(problem)),
+        pose_blocks_(static_cast<std::size_t>(reduced_.rows())),
         cross_(problem.observations.size()),
         point_blocks_(problem.points.size()),
         inverses_(problem.points.size()),
         point_gradients_(problem.points.size()) {}
 
   void Linearize() {
-    poses_.SetZero();
-    pose_gradient_ = Eigen::VectorXd::Zero(6 * poses_.rows());
+    std::ranges::fill(pose_blocks_, BlockSkyline::Block::Zero());
+    pose_gradient_ = Eigen::VectorXd::Zero(6 * reduced_.rows());
     for (std::size_t p = 0; p < problem_.points.size(); ++p) LinearizePoint(p);
     const int pose = problem_.scale_frame - problem_.fixed_frames;
     if (pose < 0) return;
     Eigen::Matrix<double, 1, 6> by_pose;
     const double error = ScaleError(problem_, scale_length_, &by_pose);
-    poses_.At(pose, pose) += by_pose.transpose() * by_pose;
+    pose_blocks_[pose] += by_pose.transpose() * by_pose;
     pose_gradient_.segment<6>(6 * pose) += by_pose.transpose() * error;
   }
 
   /// Steps of poses and points for a damping `lambda`; false if the system is singular.
   bool Solve(double lambda, Eigen::VectorXd* pose_steps, std::vector<Eigen::Vector3d>* point_steps) {
-    reduced_ = poses_;
+    reduced_.SetZero();
     Eigen::VectorXd right = -pose_gradient_;
     for (int i = 0; i < reduced_.rows(); ++i) {
+      reduced_.At(i, i) = pose_blocks_[i];
       reduced_.At(i, i).diagonal() *= 1.0 + lambda;
       reduced_.At(i, i).diagonal().array() += 1e-12;
     }
@@ -221,55 +194,25 @@ class NormalEquations {
   void LinearizePoint(std::size_t p) {
     point_blocks_[p].setZero();
     point_gradients_[p].setZero();
-    const SE3 T_world_anchor = problem_.T_cam_world[problem_.points[p].anchor].Inverse();
-    BundleJacobian now, before;
-    bool linked = false;
+    const BundlePoint& point = problem_.points[p];
+    const SE3 T_world_anchor = problem_.T_cam_world[point.anchor].Inverse();
+    BundleJacobian jacobian;
     for (std::size_t i = begin_[p]; i < begin_[p + 1]; ++i) {
       cross_[i].setZero();
       const auto& observation = problem_.observations[i];
-      const bool visible = evo::Linearize(problem_.T_cam_world[observation.frame] * T_world_anchor,
-                                          problem_.points[p].inverse_depth, observation, &now);
-      if (visible) {
-        const double weight =
-            noise_.Weight(i == begin_[p], i + 1 == begin_[p + 1]) * CauchyWeight(now.error.squaredNorm(), noise_.width);
-        AddTerm(p, weight, now.error, now.by_point);
-        AddPose(i, weight, now.error, now.by_point, now.by_pose);
-      }
-      if (visible && linked && noise_.link_weight > 0.0) AddLink(p, i, before, now);
-      before = now;
-      linked = visible;
+      const SE3 T_cam_anchor = problem_.T_cam_world[observation.frame] * T_world_anchor;
+      if (!evo::Linearize(T_cam_anchor, point.inverse_depth, observation, &jacobian)) continue;
+      const double weight = CauchyWeight(jacobian.error.squaredNorm(), width_);
+      const Eigen::Matrix<double, 3, 2> weighted = weight * jacobian.by_point.transpose();
+      point_blocks_[p].noalias() += weighted.lazyProduct(jacobian.by_point);
+      point_gradients_[p].noalias() += weighted * jacobian.error;
+      const int pose = Pose(i);
+      if (pose < 0) continue;
+      const Eigen::Matrix<double, 6, 2> turned = weight * jacobian.by_pose.transpose();
+      pose_blocks_[pose].noalias() += turned.lazyProduct(jacobian.by_pose);
+      pose_gradient_.segment<6>(6 * pose).noalias() += turned * jacobian.error;
+      cross_[i].noalias() = turned.lazyProduct(jacobian.by_point);
     }
-  }
-
-  /// The point's share of a term with the given error and derivative.
-  void AddTerm(std::size_t p, double weight, const Eigen::Vector2d& error,
-               const Eigen::Matrix<double, 2, 3>& by_point) {
-    const Eigen::Matrix<double, 3, 2> weighted = weight * by_point.transpose();
-    point_blocks_[p].noalias() += weighted.lazyProduct(by_point);
-    point_gradients_[p].noalias() += weighted * error;
-  }
-
-  /// The share of the pose of observation `i`.
-  void AddPose(std::size_t i, double weight, const Eigen::Vector2d& error, const Eigen::Matrix<double, 2, 3>& by_point,
-               const Eigen::Matrix<double, 2, 6>& by_pose) {
-    const int pose = Pose(i);
-    if (pose < 0) return;
-    const Eigen::Matrix<double, 6, 2> weighted = weight * by_pose.transpose();
-    poses_.At(pose, pose).noalias() += weighted.lazyProduct(by_pose);
-    pose_gradient_.segment<6>(6 * pose).noalias() += weighted * error;
-    cross_[i].noalias() += weighted.lazyProduct(by_point);
-  }
-
-  /// The difference between observation `i` and the one before it.
-  void AddLink(std::size_t p, std::size_t i, const BundleJacobian& before, const BundleJacobian& now) {
-    const Eigen::Vector2d error = now.error - before.error;
-    const Eigen::Matrix<double, 2, 3> by_point = now.by_point - before.by_point;
-    const double weight = noise_.link_weight * CauchyWeight(error.squaredNorm(), noise_.link_width);
-    AddTerm(p, weight, error, by_point);
-    AddPose(i, weight, error, by_point, now.by_pose);
-    AddPose(i - 1, weight, error, by_point, -before.by_pose);
-    if (Pose(i) < 0 || Pose(i - 1) < 0) return;
-    poses_.At(Pose(i), Pose(i - 1)).noalias() -= (weight * now.by_pose.transpose()).lazyProduct(before.by_pose);
   }
 
   void EliminatePoint(std::size_t p, double lambda, Eigen::VectorXd* right) {
@@ -290,11 +233,11 @@ class NormalEquations {
   }
 
   const BundleProblem& problem_;
-  const NoiseModel& noise_;
+  double width_;
   const std::vector<std::size_t>& begin_;  // of every point's observations
   double scale_length_;
-  BlockSkyline poses_;  // the poses' part of the normal matrix
   BlockSkyline reduced_;
+  std::vector<BlockSkyline::Block> pose_blocks_;
   std::vector<Matrix63> cross_;
   std::vector<Eigen::Matrix3d> point_blocks_;
   std::vector<Eigen::Matrix3d> inverses_;
@@ -379,14 +322,14 @@ std::vector<int> BundleSkyline(const BundleProblem& problem) {
 }
 
 BundleSummary AdjustBundle(const BundleOptions& options, BundleProblem* problem) {
-  const NoiseModel noise(options);
+  const double width = options.loss_px;
   const auto begin = FirstObservations(*problem);
   const double scale_length = problem->scale_frame < 0 ? 1.0 : ScaleLength(*problem);
   std::vector<double> costs(problem->points.size());
-  for (std::size_t p = 0; p < costs.size(); ++p) costs[p] = PointCost(*problem, noise, begin[p], begin[p + 1]);
+  for (std::size_t p = 0; p < costs.size(); ++p) costs[p] = PointCost(*problem, width, begin[p], begin[p + 1]);
   BundleSummary summary;
   summary.initial_cost = summary.final_cost = std::accumulate(costs.begin(), costs.end(), 0.0);
-  NormalEquations equations(*problem, noise, begin, scale_length);
+  NormalEquations equations(*problem, width, begin, scale_length);
   double damping = kFirstDamping;
   Eigen::VectorXd pose_steps;
   std::vector<Eigen::Vector3d> point_steps;
@@ -399,7 +342,7 @@ BundleSummary AdjustBundle(const BundleOptions& options, BundleProblem* problem)
     while (damping <= kLargestDamping) {
       if (equations.Solve(damping, &pose_steps, &point_steps)) {
         Apply(pose_steps, point_steps, problem);
-        cost = CostAfterStep(old_points, noise, begin, &costs, problem);
+        cost = CostAfterStep(old_points, width, begin, &costs, problem);
         if (cost < summary.final_cost) break;
         problem->T_cam_world = old_poses;
         problem->points = old_points;
@@ -408,9 +351,6 @@ BundleSummary AdjustBundle(const BundleOptions& options, BundleProblem* problem)
       damping = std::max(kRetryDamping, 10.0 * damping);
     }
     if (!(cost < summary.final_cost)) break;
-    if (getenv("BA"))
-      fprintf(stderr, "it %d cost %.6f -> %.6f damping %g posestep %g\n", summary.iterations, summary.final_cost, cost,
-              damping, pose_steps.norm());
     damping = std::max(kSmallestDamping, 0.03 * damping);
     const double decrease = summary.final_cost - cost;
     summary.final_cost = cost;

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <unordered_map>
@@ -17,13 +18,15 @@ namespace evo {
 namespace {
 
 constexpr std::size_t kFewestSightings = 3;  // of a track that takes part
+// Frames after which a track counts as a new one, tried in turn until the adjustment is affordable: fewer and fewer
+// frames are tied together, at first only by the longest tracks.
+constexpr std::array kSpans = {std::numeric_limits<int>::max(), 120, 80, 60, 40};
 constexpr std::size_t kTriangulationViews = 8;
 constexpr double kFarShare = 1e-3;          // inverse depth of a track without parallax, of the usual one
 constexpr double kMedianToSigma = 0.8493;   // the norm of a 2-d unit Gaussian has the median 1.1774
 constexpr double kCauchyEfficient = 2.385;  // 95 % efficiency under Gaussian noise
 constexpr double kOutlierSigmas = 5.0;
 constexpr double kSmallestSigmaPx = 0.05;
-constexpr double kLargestCorrelation = 0.99;
 constexpr double kSmallestInverseDepth = 1e-9;
 
 /// A bundle problem with the names of its parts.
@@ -119,7 +122,7 @@ NamedProblem BuildAffordableProblem(const FinalRefinementOptions& options, const
   }
   const auto moving = MovingFrames(frames, segment, options.min_disparity_px);
   for (std::size_t n = 1;; ++n) {
-    for (const int span : {std::numeric_limits<int>::max(), 120, 80, 60, 40}) {
+    for (const int span : kSpans) {
       NamedProblem problem = BuildProblem(frames, segment, EveryNth(moving, n), span, kFarShare * mean_inverse_depth);
       problem.bundle.scale_frame = FarthestFrame(problem.bundle);
       const double cost = BlockSkyline::Cost(BundleSkyline(problem.bundle));
@@ -134,25 +137,11 @@ double Median(std::vector<double> values) {
   return *middle;
 }
 
-/// The noise of the sightings, measured robustly from their residuals.
-struct Noise {
-  double sigma_px = kSmallestSigmaPx;  ///< of a coordinate
-  double correlation = 0.0;            ///< between a track's neighbouring sightings
-};
-
-Noise MeasureNoise(const BundleProblem& problem) {
-  const auto errors = BundleErrors(problem);
-  std::vector<double> norms, differences;
-  for (std::size_t i = 0; i < errors.size(); ++i) {
-    if (!errors[i].allFinite()) continue;
-    norms.push_back(errors[i].norm());
-    const bool linked = i > 0 && problem.observations[i - 1].point == problem.observations[i].point;
-    if (linked && errors[i - 1].allFinite()) differences.push_back((errors[i] - errors[i - 1]).norm());
-  }
-  if (differences.empty()) return {};
-  const double sigma = std::max(kSmallestSigmaPx, kMedianToSigma * Median(std::move(norms)));
-  const double step = kMedianToSigma * Median(std::move(differences));
-  return {sigma, std::clamp(1.0 - 0.5 * step * step / (sigma * sigma), 0.0, kLargestCorrelation)};
+/// Standard deviation of a coordinate of the sightings, from the median residual.
+double MeasureNoise(const BundleProblem& problem) {
+  std::vector<double> norms;
+  for (const auto& error : BundleErrors(problem)) norms.push_back(error.norm());
+  return norms.empty() ? kSmallestSigmaPx : std::max(kSmallestSigmaPx, kMedianToSigma * Median(std::move(norms)));
 }
 
 /// Leaves out the tracks that mostly contradict the motion: things that move by themselves, and slips.
@@ -165,25 +154,22 @@ void DropContradictions(double sigma_px, BundleProblem* problem) {
   std::erase_if(problem->observations, [&](const BundleObservation& o) { return balance[o.point] < 0; });
 }
 
-/// Rounds of adjustment, each with the noise that the one before has left.
-Noise Adjust(const FinalRefinementOptions& options, const std::function<void(double)>& progress,
-             BundleProblem* problem) {
-  Noise noise = MeasureNoise(*problem);
+/// Rounds of adjustment, each with the noise that the one before has left; returns the last.
+double Adjust(const FinalRefinementOptions& options, const std::function<void(double)>& progress,
+              BundleProblem* problem) {
+  double sigma_px = MeasureNoise(*problem);
   for (int round = 0; round < options.rounds; ++round) {
-    const auto summary = AdjustBundle({.iterations = options.iterations,
-                                       .loss_px = kCauchyEfficient * noise.sigma_px,
-                                       .correlation = noise.correlation},
-                                      problem);
+    const auto summary =
+        AdjustBundle({.iterations = options.iterations, .loss_px = kCauchyEfficient * sigma_px}, problem);
     spdlog::debug(
-        "odometry: {} frames, {} points, {} sightings, noise {:.2f} px, correlation {:.2f}: cost {:.1f} to "
-        "{:.1f} in {} iterations",
-        problem->T_cam_world.size(), problem->points.size(), problem->observations.size(), noise.sigma_px,
-        noise.correlation, summary.initial_cost, summary.final_cost, summary.iterations);
-    noise = MeasureNoise(*problem);
-    DropContradictions(noise.sigma_px, problem);
+        "odometry: {} frames, {} points, {} sightings, noise {:.2f} px: cost {:.1f} to {:.1f} in {} iterations",
+        problem->T_cam_world.size(), problem->points.size(), problem->observations.size(), sigma_px,
+        summary.initial_cost, summary.final_cost, summary.iterations);
+    sigma_px = MeasureNoise(*problem);
+    DropContradictions(sigma_px, problem);
     progress(0.9 * (round + 1) / options.rounds);
   }
-  return noise;
+  return sigma_px;
 }
 
 /// The refined points that lie in front, with their histories; kept apart by track for the frames' poses.
@@ -234,8 +220,8 @@ void Register(Parameters& parameters, FinalRefinementOptions& options) {
 void RefineSegment(const FinalRefinementOptions& options, const std::vector<Frame>& frames, int before, int after,
                    const std::function<void(double)>& progress, Segment* segment) {
   NamedProblem problem = BuildAffordableProblem(options, frames, *segment);
-  const Noise noise = Adjust(options, progress, &problem.bundle);
-  const auto positions = TakePoints(problem, noise.sigma_px, segment);
+  const double sigma_px = Adjust(options, progress, &problem.bundle);
+  const auto positions = TakePoints(problem, sigma_px, segment);
 
   const PoseOptimizer optimizer({});
   Segment refined;

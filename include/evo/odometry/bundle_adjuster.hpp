@@ -31,9 +31,7 @@ struct BundleProblem {
 
 struct BundleOptions {
   int iterations = 20;
-  double loss_px = 1.0;  ///< Cauchy's width
-  /// Correlation of a track's noise between one observation and the next, in [0, 1): the drift of a tracker's template.
-  double correlation = 0.0;
+  double loss_px = 1.0;             ///< Cauchy's width
   double relative_decrease = 1e-8;  ///< of the cost in one step: stop below
 };
 
@@ -55,9 +53,6 @@ bool Linearize(const SE3& T_cam_anchor, const Eigen::Vector3d& inverse_depth, co
 
 /// Refines poses and points together: Levenberg-Marquardt on Cauchy's loss of the reprojection errors, the points
 /// eliminated by Schur's complement, the poses solved by a skyline Cholesky factorisation.
-/// The noise of a track is taken for a stationary first-order autoregression e' = c e + white noise. Its inverse
-/// covariance has three diagonals: it is a sum of squares of the errors and of the differences of neighbouring errors,
-/// and the loss applies to either kind, so that a slip costs one difference and not the rest of the track.
 BundleSummary AdjustBundle(const BundleOptions& options, BundleProblem* problem);
 
 /// Where a point of the problem is in the world; infinite for rho = 0.
