@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <set>
 
+#include "app/error_place.hpp"
 #include "evo/core/progress.hpp"
 #include "evo/io/trajectory_io.hpp"
 #include "evo/odometry/map_writer.hpp"
@@ -75,11 +76,14 @@ TrackingOutcome RunTrackingStage(const StageContext& context, Recording* recordi
   TrackingOutcome outcome;
   outcome.result = context.record->Time("track", [&] {
     Progress progress("tracking", context.show_progress);
-    return TrackEvents(
-        recording->reader.get(), recording->camera.width(), recording->camera.height(), context.config.tracker,
-        context.pool, [&](double done) { progress.Update(done); },
-        context.options.draw_every_s > 0.0 ? observe : std::function<void(const TrackingView&)>{});
+    return NamingPlace(recording->events.string(), [&] {
+      return TrackEvents(
+          recording->reader.get(), recording->camera.width(), recording->camera.height(), context.config.tracker,
+          context.pool, [&](double done) { progress.Update(done); },
+          context.options.draw_every_s > 0.0 ? observe : std::function<void(const TrackingView&)>{});
+    });
   });
+  RoundAsWritten(&outcome.result.tracks);  // the odometry from tracks.txt shall give the same trajectory
   outcome.lifetimes = ComputeLifetimes(outcome.result.tracks, outcome.result.frames);
   context.record->Time("write_tracks", [&] {
     WriteTracks(context.options.out / "tracks.txt", outcome.result.tracks,
@@ -98,11 +102,14 @@ TrackingOutcome RunTrackingStage(const StageContext& context, Recording* recordi
 
 std::vector<std::string> OdometryResultNames() { return {"trajectory.txt", "map.ply"}; }
 
-OdometryResult RunOdometryStage(const StageContext& context, const Tracks& tracks, const Camera& camera) {
+OdometryResult RunOdometryStage(const StageContext& context, const Tracks& tracks, const std::filesystem::path& source,
+                                const Camera& camera) {
   OdometryResult result = context.record->Time("odometry", [&] {
     Progress progress("odometry", context.show_progress);
-    return RunOdometry(tracks, camera, context.config.odometry, context.pool->size(),
-                       [&](double done) { progress.Update(done); });
+    return NamingPlace(source.string(), [&] {
+      return RunOdometry(tracks, camera, context.config.odometry, context.pool->size(),
+                         [&](double done) { progress.Update(done); });
+    });
   });
   for (const TimeNs t : result.lost) spdlog::debug("no pose at {} s", FormatTime(t));
   for (std::size_t i = 1; i < result.bootstraps.size(); ++i) {
