@@ -52,14 +52,15 @@ std::size_t CountIds(const Tracks& tracks) {
 
 void AddStageOptions(CLI::App& command, StageOptions& options) {
   command.add_option("--out", options.out, "folder for the results")->required()->type_name("DIR");
-  command.add_flag("!--no-plots", options.plots, "write tables only");
+  command.add_flag_callback(
+      "--no-plots", [&options] { options.plots = false; }, "write tables only");
 }
 
 void AddDrawingOption(CLI::App& command, StageOptions& options) {
   command
       .add_option("--draw-every", options.draw_every_s,
                   "draw the event frame with its tracks into images/ every so many seconds")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Validator(CLI::PositiveNumber).description(""))
       ->type_name("S");
 }
 
