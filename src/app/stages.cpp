@@ -68,11 +68,12 @@ std::vector<std::string> TrackingResultNames() { return {"tracks.txt", "lifetime
 
 TrackingOutcome RunTrackingStage(const StageContext& context, Recording* recording) {
   const TimeNs first = recording->reader->first_stamp();
-  TimeNs next_drawing = 0;
+  const TimeNs interval = FromSeconds(context.options.draw_every_s);
+  TimeNs next_drawing = first;
   const auto observe = [&](const TrackingView& view) {
     if (view.t < next_drawing) return;
     DrawFrame(context.options.out / "images", view, first);
-    next_drawing = view.t + FromSeconds(context.options.draw_every_s);
+    next_drawing = std::max(next_drawing + interval, view.t);
   };
   TrackingOutcome outcome;
   outcome.result = context.record->Time("track", [&] {

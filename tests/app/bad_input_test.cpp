@@ -78,7 +78,8 @@ class BadInputTest : public EvoRunTest {
     for (int frame = 0; frame < 60; ++frame) {
       for (int id = 0; id < count; ++id) {
         text += std::to_string(id) + " " + std::to_string(0.02 * frame) + " " +
-                std::to_string(10.0 + id * 37 % 200 + step_px * frame) + " " + std::to_string(10 + id * 23 % 230) + "\n";
+                std::to_string(10.0 + id * 37 % 200 + step_px * frame) + " " + std::to_string(10 + id * 23 % 230) +
+                "\n";
       }
     }
     return Write(name, text);

@@ -22,8 +22,8 @@ class EvoRunTest : public ::testing::Test {
   /// Runs evo-run with shell words; fills out and err and returns the exit code. `before` are shell commands that run
   /// in the same shell first.
   int Run(const std::string& words, const std::string& before = "") {
-    const std::string command = "(" + before + " exec '" EVO_RUN "' " + words + ") >" + Quote(Path("stdout")) + " 2>" +
-                                Quote(Path("stderr"));
+    const std::string command =
+        "(" + before + " exec '" EVO_RUN "' " + words + ") >" + Quote(Path("stdout")) + " 2>" + Quote(Path("stderr"));
     const int status = std::system(command.c_str());
     out = ReadFile(folder / "stdout");
     err = ReadFile(folder / "stderr");
