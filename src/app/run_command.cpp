@@ -1,5 +1,8 @@
+#include <spdlog/spdlog.h>
+
 #include <iostream>
 #include <memory>
+#include <span>
 
 #include "app/commands.hpp"
 #include "app/error_place.hpp"
@@ -8,17 +11,20 @@
 #include "app/options.hpp"
 #include "app/output_folder.hpp"
 #include "app/stages.hpp"
+#include "evo/core/error.hpp"
 #include "evo/report/tables.hpp"
 
 namespace evo::app {
 
 namespace {
 
+constexpr const char* kUsualAlignments = "origin-scale,sim3";
+
 struct RunArguments {
   CommonOptions common;
   RecordingArguments recording;
   std::string ground_truth;
-  std::string align = "origin-scale,sim3";
+  std::string align;  ///< empty: the usual ones, as far as the motion determines them
   StageOptions stage;
 };
 
@@ -59,26 +65,44 @@ std::vector<std::string> ResultNames(const std::vector<Alignment>& alignments) {
   return results;
 }
 
-Evaluation RunEvaluationStage(const StageContext& context, const GroundTruth& truth, const Trajectory& estimate,
-                              const TrackingResult& tracking, const std::vector<Alignment>& alignments) {
-  const auto& options = context.config.evaluation;
+/// Drops the alignments that these trajectories do not determine: a straight line, say, leaves sim3's roll open.
+void KeepDetermined(const Trajectory& truth, const Trajectory& estimate, const EvaluationInterval& interval,
+                    const EvaluationOptions& options, std::vector<Alignment>* alignments) {
+  std::erase_if(*alignments, [&](const Alignment& alignment) {
+    try {
+      Evaluate(truth, estimate, std::span(&alignment, 1), interval, options);
+      return false;
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::kDegenerateAlignment) throw;
+      spdlog::warn("left out of the report: {}", error.what());
+      return true;
+    }
+  });
+}
+
+/// `only_determined`: as far as the motion allows. Prints the summary.
+void RunEvaluationStage(const StageContext& context, const GroundTruth& truth, const Trajectory& estimate,
+                        const std::vector<TimeNs>& frames, std::vector<Alignment> alignments, bool only_determined) {
+  const EvaluationOptions& options = context.config.evaluation;
   const TimeNs offset = FromSeconds(options.association.estimate_clock_offset_s);
   // The truth of the whole interval counts: an estimate that covers a part of it must not look complete.
-  const EvaluationInterval interval{tracking.frames.front() + offset, tracking.frames.back() + offset};
-  Evaluation evaluation = context.record->Time("evaluate", [&] {
-    return NamingPlace((context.options.out / "trajectory.txt").string() + " against " + truth.path.string(),
-                       [&] { return Evaluate(truth.trajectory, estimate, alignments, interval, options); });
+  const EvaluationInterval interval{frames.front() + offset, frames.back() + offset};
+  NamingPlace((context.options.out / "trajectory.txt").string() + " against " + truth.path.string(), [&] {
+    if (only_determined) KeepDetermined(truth.trajectory, estimate, interval, options, &alignments);
+    if (alignments.empty()) return;
+    const Evaluation evaluation = context.record->Time(
+        "evaluate", [&] { return Evaluate(truth.trajectory, estimate, alignments, interval, options); });
+    context.record->Time("write_evaluation", [&] {
+      WriteEvaluationResults(context.options.out, SequenceName(truth.path), evaluation, !context.options.no_plots);
+    });
+    std::cout << FormatSummary(evaluation);
   });
-  context.record->Time("write_evaluation", [&] {
-    WriteEvaluationResults(context.options.out, SequenceName(truth.path), evaluation, context.options.plots);
-  });
-  return evaluation;
 }
 
 void RunAll(const RunArguments& arguments, const std::vector<std::string>& command_line) {
   Config config;
   arguments.common.Apply(&config);
-  const auto alignments = ParseAlignments(arguments.align);
+  const auto alignments = ParseAlignments(arguments.align.empty() ? kUsualAlignments : arguments.align);
   CheckOutputFolder(arguments.stage.out, ResultNames(alignments), arguments.common.force);
   RunRecord record(command_line, config.parameters);
   // Every input is opened before any work, so that a wrong one is reported at once.
@@ -97,7 +121,8 @@ void RunAll(const RunArguments& arguments, const std::vector<std::string>& comma
       RunOdometryStage(context, tracking.result.tracks, context.options.out / "tracks.txt", recording.camera);
   std::cout << FormatOdometry(odometry) << FormatSpeed(tracking.result, record.manifest, pool.size()) << std::flush;
   if (truth) {
-    std::cout << FormatSummary(RunEvaluationStage(context, *truth, odometry.trajectory, tracking.result, alignments));
+    RunEvaluationStage(context, *truth, odometry.trajectory, tracking.result.frames, alignments,
+                       arguments.align.empty());
   }
   WriteManifest(context.options.out / "manifest.json", record.manifest);
   std::cout << "results    " << context.options.out.string() << '\n';
@@ -114,6 +139,7 @@ Command AddRunCommand(CLI::App& app) {
                    "MVSEC _gt.hdf5, UZH groundtruth.txt or TUM text; default: the one in the sequence's folder, if any")
       ->type_name("FILE");
   AddAlignmentOption(*parser, arguments->align);
+  parser->get_option("--align")->default_str(kUsualAlignments);  // as far as the motion determines them
   AddStageOptions(*parser, arguments->stage);
   AddDrawingOption(*parser, arguments->stage);
   AddConfigurationOptions(*parser, arguments->common);

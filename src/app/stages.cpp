@@ -52,8 +52,7 @@ std::size_t CountIds(const Tracks& tracks) {
 
 void AddStageOptions(CLI::App& command, StageOptions& options) {
   command.add_option("--out", options.out, "folder for the results")->required()->type_name("DIR");
-  command.add_flag_callback(
-      "--no-plots", [&options] { options.plots = false; }, "write tables only");
+  command.add_flag("--no-plots", options.no_plots, "write tables only");
 }
 
 void AddDrawingOption(CLI::App& command, StageOptions& options) {
@@ -91,8 +90,9 @@ TrackingOutcome RunTrackingStage(const StageContext& context, Recording* recordi
     WriteTracks(context.options.out / "tracks.txt", outcome.result.tracks,
                 {"pixels of the raw sensor, each at the very instant of its stamp"});
     WriteLifetimes(context.options.out / "lifetime.csv", outcome.lifetimes);
-    if (context.options.plots)
+    if (!context.options.no_plots) {
       Gnuplot(context.options.out / "plots").Draw("lifetime", LifetimeFigure("lifetime", outcome.lifetimes));
+    }
   });
   context.record->AddCount("events", outcome.result.events);
   context.record->AddCount("event_frames", outcome.result.frames.size());

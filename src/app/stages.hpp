@@ -17,7 +17,7 @@ namespace evo::app {
 /// Where results go and what is drawn.
 struct StageOptions {
   std::filesystem::path out;
-  bool plots = true;
+  bool no_plots = false;
   double draw_every_s = 0.0;  ///< 0: no images of event frames
 };
 

@@ -18,6 +18,7 @@ namespace {
 constexpr std::size_t kSampleSize = 8;
 constexpr int kRefinements = 10;
 constexpr double kPromising = 1.5;  // of the best cost so far
+constexpr int kFewestSamples = 40;  // however good the first ones are: there may be a second optimum
 
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
@@ -81,6 +82,17 @@ double SampsonWithJacobian(const Matrix3d& essential, const std::array<Matrix3d,
     (*jacobian)[k] = (x2.dot(change2) - error * change_of_length) / length;
   }
   return error;
+}
+
+/// Direction of the translation that alone explains two pairs. Where the views are nearly affine (a narrow lens, a
+/// sideways move), a turn with the translation and all depths reversed explains them almost as well, and eight-point
+/// samples may all end in that second optimum; this start leads to the first.
+std::optional<Vector3d> PureTranslation(const Correspondence& a, const Correspondence& b) {
+  const Vector3d normal_a = a.x1.homogeneous().cross(a.x2.homogeneous());
+  const Vector3d normal_b = b.x1.homogeneous().cross(b.x2.homogeneous());
+  const Vector3d t = normal_a.cross(normal_b);
+  if (!(t.norm() > 1e-3 * normal_a.norm() * normal_b.norm())) return std::nullopt;
+  return t.normalized();
 }
 
 /// A motion with its inliers; `cost` sums the squared errors, cut off at the threshold (smaller is better).
@@ -209,21 +221,25 @@ std::optional<RelativePose> EstimateRelativePose(std::span<const Correspondence>
   std::vector<Correspondence> sample(kSampleSize);
   Candidate best;
   best.cost = std::numeric_limits<double>::infinity();
+  const auto consider = [&](const SE3& motion) {
+    const Candidate candidate = Judge(pairs, motion, options.threshold);
+    // A sample's motion is far from the best that its inliers allow: every promising one is polished before it is
+    // judged.
+    if (!(candidate.cost < kPromising * best.cost)) return;
+    Candidate polished = Polish(pairs, candidate, options.threshold);
+    if (polished.cost < best.cost) best = std::move(polished);
+  };
   int needed = options.iterations;
-  for (int i = 0; i < needed; ++i) {
+  for (int i = 0; i < std::max(needed, kFewestSamples); ++i) {
     for (std::size_t k = 0; k < kSampleSize; ++k) {  // partial Fisher-Yates; the modulo's bias is below 1e-6
       std::swap(order[k], order[k + random() % (order.size() - k)]);
       sample[k] = pairs[order[k]];
     }
-    const auto essential = EightPoint(sample);
-    if (!essential) continue;
-    const Candidate candidate = Judge(pairs, ChooseByCheirality(*essential, sample), options.threshold);
-    // A sample's motion is far from the best that its inliers allow: every promising one is polished before it is
-    // judged.
-    if (!(candidate.cost < kPromising * best.cost)) continue;
-    Candidate polished = Polish(pairs, candidate, options.threshold);
-    if (!(polished.cost < best.cost)) continue;
-    best = std::move(polished);
+    if (const auto essential = EightPoint(sample)) consider(ChooseByCheirality(*essential, sample));
+    if (const auto translation = PureTranslation(sample[0], sample[1])) {
+      consider(SE3(Eigen::Quaterniond::Identity(), *translation));
+      consider(SE3(Eigen::Quaterniond::Identity(), -*translation));
+    }
     needed = std::min(options.iterations, SamplesNeeded(best.pose.inlier_count, pairs.size(), options));
   }
   if (best.pose.inlier_count < static_cast<int>(kSampleSize)) return std::nullopt;

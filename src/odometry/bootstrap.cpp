@@ -170,16 +170,16 @@ bool Bootstrapper::Refine(Bootstrap* bootstrap) const {
   }
   for (std::size_t p = 0; p < bootstrap->points.size(); ++p) {
     const Eigen::Vector3d& position = bootstrap->points[p].position;
-    problem.points.push_back({SE3(), Eigen::Vector3d(position.x(), position.y(), 1.0) / position.z()});
+    problem.points.push_back({0, Eigen::Vector3d(position.x(), position.y(), 1.0) / position.z()});
     for (int k = 0; k < used; ++k) {
       const Feature* const feature = frames_[bootstrap->first + chosen[k]].Find(bootstrap->points[p].track);
       if (feature) problem.observations.push_back({k, static_cast<int>(p), feature->x, feature->px_per_unit});
     }
   }
   AdjustBundle({}, &problem);
-  const auto residuals = BundleResiduals(problem);
-  const auto good = std::ranges::count_if(residuals, [](double r) { return r < kGoodPx; });
-  if (static_cast<double>(good) < kGoodShare * static_cast<double>(residuals.size())) return false;
+  const auto errors = BundleErrors(problem);
+  const auto good = std::ranges::count_if(errors, [](const auto& error) { return error.norm() < kGoodPx; });
+  if (static_cast<double>(good) < kGoodShare * static_cast<double>(errors.size())) return false;
   std::vector<double> depths;
   for (const auto& point : problem.points) {
     if (point.inverse_depth.z() > 0.0) depths.push_back(1.0 / point.inverse_depth.z());
@@ -190,7 +190,7 @@ bool Bootstrapper::Refine(Bootstrap* bootstrap) const {
   for (std::size_t p = 0; p < problem.points.size(); ++p) {
     if (!(problem.points[p].inverse_depth.z() > 0.0)) continue;
     points.push_back(bootstrap->points[p]);
-    points.back().position = scale * problem.points[p].World();
+    points.back().position = scale * WorldPosition(problem, problem.points[p]);
   }
   bootstrap->points = std::move(points);
   for (int k = 0; k < used; ++k) {

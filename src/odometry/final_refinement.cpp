@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <unordered_map>
 
 #include "evo/geometry/triangulation.hpp"
@@ -22,6 +23,7 @@ constexpr double kMedianToSigma = 0.8493;   // the norm of a 2-d unit Gaussian h
 constexpr double kCauchyEfficient = 2.385;  // 95 % efficiency under Gaussian noise
 constexpr double kOutlierSigmas = 5.0;
 constexpr double kSmallestSigmaPx = 0.05;
+constexpr double kLargestCorrelation = 0.99;
 constexpr double kSmallestInverseDepth = 1e-9;
 
 /// A bundle problem with the names of its parts.
@@ -65,11 +67,12 @@ BundlePoint InitialPoint(const std::vector<Sighting>& sightings, const std::vect
   const Eigen::Vector2d& x = sightings.front().feature->x;
   const auto point = TriangulateViews(views);
   const double z = point ? (anchor * point->position_world).z() : 0.0;
-  return {anchor.Inverse(), {x.x(), x.y(), z > 0.0 ? 1.0 / z : far}};
+  return {sightings.front().frame, {x.x(), x.y(), z > 0.0 ? 1.0 / z : far}};
 }
 
+/// `places` are the segment's frames that take part; a track is cut into points of its own every `span` of them.
 NamedProblem BuildProblem(const std::vector<Frame>& frames, const Segment& segment,
-                          const std::vector<std::size_t>& places, double far) {
+                          const std::vector<std::size_t>& places, int span, double far) {
   NamedProblem problem;
   problem.frames = places;
   std::unordered_map<std::int64_t, std::size_t> numbers;
@@ -78,8 +81,12 @@ NamedProblem BuildProblem(const std::vector<Frame>& frames, const Segment& segme
     problem.bundle.T_cam_world.push_back(segment.T_cam_world[places[k]]);
     for (const Feature& feature : frames[segment.frames[places[k]]].features) {
       const auto [place, is_new] = numbers.try_emplace(feature.track, tracks.size());
-      if (is_new) tracks.emplace_back(feature.track, std::vector<Sighting>());
-      tracks[place->second].second.push_back({static_cast<int>(k), &feature});
+      const int frame = static_cast<int>(k);
+      if (is_new || frame - tracks[place->second].second.front().frame >= span) {
+        place->second = tracks.size();
+        tracks.emplace_back(feature.track, std::vector<Sighting>());
+      }
+      tracks[place->second].second.push_back({frame, &feature});
     }
   }
   for (const auto& [track, sightings] : tracks) {
@@ -94,6 +101,14 @@ NamedProblem BuildProblem(const std::vector<Frame>& frames, const Segment& segme
   return problem;
 }
 
+int FarthestFrame(const BundleProblem& problem) {
+  const SE3 T_world_first = problem.T_cam_world.front().Inverse();
+  const auto farthest = std::ranges::max_element(problem.T_cam_world, {}, [&](const SE3& T_cam_world) {
+    return (T_cam_world * T_world_first).translation().norm();
+  });
+  return static_cast<int>(farthest - problem.T_cam_world.begin());
+}
+
 /// The problem over as many frames as the budget allows.
 NamedProblem BuildAffordableProblem(const FinalRefinementOptions& options, const std::vector<Frame>& frames,
                                     const Segment& segment) {
@@ -104,73 +119,81 @@ NamedProblem BuildAffordableProblem(const FinalRefinementOptions& options, const
   }
   const auto moving = MovingFrames(frames, segment, options.min_disparity_px);
   for (std::size_t n = 1;; ++n) {
-    NamedProblem problem = BuildProblem(frames, segment, EveryNth(moving, n), kFarShare * mean_inverse_depth);
-    const double cost = BlockSkyline::Cost(BundleSkyline(problem.bundle));
-    if (cost <= options.budget || problem.frames.size() <= 2) return problem;
+    for (const int span : {std::numeric_limits<int>::max(), 120, 80, 60, 40}) {
+      NamedProblem problem = BuildProblem(frames, segment, EveryNth(moving, n), span, kFarShare * mean_inverse_depth);
+      problem.bundle.scale_frame = FarthestFrame(problem.bundle);
+      const double cost = BlockSkyline::Cost(BundleSkyline(problem.bundle));
+      if (cost <= options.budget || problem.frames.size() <= 2) return problem;
+    }
   }
 }
 
-double RobustSigma(std::vector<double> residuals) {
-  if (residuals.empty()) return kSmallestSigmaPx;
-  const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
-  std::nth_element(residuals.begin(), middle, residuals.end());
-  return std::max(kSmallestSigmaPx, kMedianToSigma * *middle);
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
-double PathLength(const std::vector<SE3>& poses) {
-  double length = 0.0;
-  for (std::size_t i = 1; i < poses.size(); ++i) {
-    length += (poses[i].Inverse().translation() - poses[i - 1].Inverse().translation()).norm();
+/// The noise of the sightings, measured robustly from their residuals.
+struct Noise {
+  double sigma_px = kSmallestSigmaPx;  ///< of a coordinate
+  double correlation = 0.0;            ///< between a track's neighbouring sightings
+};
+
+Noise MeasureNoise(const BundleProblem& problem) {
+  const auto errors = BundleErrors(problem);
+  std::vector<double> norms, differences;
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    if (!errors[i].allFinite()) continue;
+    norms.push_back(errors[i].norm());
+    const bool linked = i > 0 && problem.observations[i - 1].point == problem.observations[i].point;
+    if (linked && errors[i - 1].allFinite()) differences.push_back((errors[i] - errors[i - 1]).norm());
   }
-  return length;
+  if (differences.empty()) return {};
+  const double sigma = std::max(kSmallestSigmaPx, kMedianToSigma * Median(std::move(norms)));
+  const double step = kMedianToSigma * Median(std::move(differences));
+  return {sigma, std::clamp(1.0 - 0.5 * step * step / (sigma * sigma), 0.0, kLargestCorrelation)};
 }
 
-/// The scale is free in the adjustment: gives the path its length back, about the first camera.
-void RestoreScale(double path, BundleProblem* problem) {
-  const double scale = path / std::max(PathLength(problem->T_cam_world), 1e-12);
-  const SE3 T_first_world = problem->T_cam_world.front();
-  const SE3 T_world_first = T_first_world.Inverse();
-  const auto rescale = [&](const SE3& T_cam_world) {
-    const SE3 T_cam_first = T_cam_world * T_world_first;
-    return SE3(T_cam_first.rotation(), scale * T_cam_first.translation()) * T_first_world;
-  };
-  for (SE3& pose : problem->T_cam_world) pose = rescale(pose);
-  for (BundlePoint& point : problem->points) {
-    point.T_world_anchor = rescale(point.T_world_anchor.Inverse()).Inverse();
-    point.inverse_depth.z() /= scale;
+/// Leaves out the tracks that mostly contradict the motion: things that move by themselves, and slips.
+void DropContradictions(double sigma_px, BundleProblem* problem) {
+  const auto errors = BundleErrors(*problem);
+  std::vector<int> balance(problem->points.size());
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    balance[problem->observations[i].point] += errors[i].norm() < kOutlierSigmas * sigma_px ? 1 : -1;
   }
+  std::erase_if(problem->observations, [&](const BundleObservation& o) { return balance[o.point] < 0; });
 }
 
-/// Two rounds: a fixed loss to find the noise, then the loss that suits it without the gross outliers.
-double Adjust(const FinalRefinementOptions& options, const std::function<void(double)>& progress,
-              BundleProblem* problem) {
-  const double path = PathLength(problem->T_cam_world);
-  const auto first = AdjustBundle({.iterations = options.iterations, .loss_px = options.loss_px}, problem);
-  progress(0.5);
-  const auto residuals = BundleResiduals(*problem);
-  const double sigma = RobustSigma(residuals);
-  std::vector<BundleObservation> kept;
-  for (std::size_t i = 0; i < residuals.size(); ++i) {
-    if (residuals[i] < kOutlierSigmas * sigma) kept.push_back(problem->observations[i]);
+/// Rounds of adjustment, each with the noise that the one before has left.
+Noise Adjust(const FinalRefinementOptions& options, const std::function<void(double)>& progress,
+             BundleProblem* problem) {
+  Noise noise = MeasureNoise(*problem);
+  for (int round = 0; round < options.rounds; ++round) {
+    const auto summary = AdjustBundle({.iterations = options.iterations,
+                                       .loss_px = kCauchyEfficient * noise.sigma_px,
+                                       .correlation = noise.correlation},
+                                      problem);
+    spdlog::debug(
+        "odometry: {} frames, {} points, {} sightings, noise {:.2f} px, correlation {:.2f}: cost {:.1f} to "
+        "{:.1f} in {} iterations",
+        problem->T_cam_world.size(), problem->points.size(), problem->observations.size(), noise.sigma_px,
+        noise.correlation, summary.initial_cost, summary.final_cost, summary.iterations);
+    noise = MeasureNoise(*problem);
+    DropContradictions(noise.sigma_px, problem);
+    progress(0.9 * (round + 1) / options.rounds);
   }
-  problem->observations = std::move(kept);
-  const auto second = AdjustBundle({.iterations = options.iterations, .loss_px = kCauchyEfficient * sigma}, problem);
-  RestoreScale(path, problem);
-  spdlog::debug("odometry: refined {} frames, {} points, {} sightings in {} + {} iterations; noise {:.2f} px",
-                problem->T_cam_world.size(), problem->points.size(), problem->observations.size(), first.iterations,
-                second.iterations, sigma);
-  progress(0.9);
-  return sigma;
+  return noise;
 }
 
 /// The refined points that lie in front, with their histories; kept apart by track for the frames' poses.
 std::unordered_map<std::int64_t, Eigen::Vector3d> TakePoints(const NamedProblem& problem, double sigma,
                                                              Segment* segment) {
   std::vector<Point> points(problem.tracks.size());
-  const auto residuals = BundleResiduals(problem.bundle);
-  for (std::size_t i = 0; i < residuals.size(); ++i) {
+  const auto errors = BundleErrors(problem.bundle);
+  for (std::size_t i = 0; i < errors.size(); ++i) {
     Point& point = points[problem.bundle.observations[i].point];
-    ++(residuals[i] < kOutlierSigmas * sigma ? point.inliers : point.outliers);
+    ++(errors[i].norm() < kOutlierSigmas * sigma ? point.inliers : point.outliers);
   }
   std::unordered_map<std::int64_t, Eigen::Vector3d> positions;
   segment->points.clear();
@@ -179,7 +202,7 @@ std::unordered_map<std::int64_t, Eigen::Vector3d> TakePoints(const NamedProblem&
     if (points[p].inliers < static_cast<int>(kFewestSightings)) continue;
     if (!(refined.inverse_depth.z() > kSmallestInverseDepth)) continue;
     points[p].track = problem.tracks[p];
-    points[p].position = refined.World();
+    points[p].position = WorldPosition(problem.bundle, refined);
     positions[points[p].track] = points[p].position;
     segment->points.push_back(points[p]);
   }
@@ -202,8 +225,8 @@ void Register(Parameters& parameters, FinalRefinementOptions& options) {
   parameters.Add("odometry.final_refinement", &options.enabled, "bundle-adjust the whole run at the end");
   parameters.Add("odometry.final.min_disparity_px", &options.min_disparity_px, 0, 100,
                  "image motion in px between the frames that take part");
-  parameters.Add("odometry.final.iterations", &options.iterations, 1, 1000, "iterations of each of the two rounds");
-  parameters.Add("odometry.final.loss_px", &options.loss_px, 0.05, 20, "width of the robust loss in the first round");
+  parameters.Add("odometry.final.iterations", &options.iterations, 1, 1000, "iterations of each round");
+  parameters.Add("odometry.final.rounds", &options.rounds, 1, 100, "rounds, the noise measured anew before each");
   parameters.Add("odometry.final.budget", &options.budget, 1e3, 1e12,
                  "block products an iteration may cost before frames are thinned out");
 }
@@ -211,8 +234,8 @@ void Register(Parameters& parameters, FinalRefinementOptions& options) {
 void RefineSegment(const FinalRefinementOptions& options, const std::vector<Frame>& frames, int before, int after,
                    const std::function<void(double)>& progress, Segment* segment) {
   NamedProblem problem = BuildAffordableProblem(options, frames, *segment);
-  const double sigma = Adjust(options, progress, &problem.bundle);
-  const auto positions = TakePoints(problem, sigma, segment);
+  const Noise noise = Adjust(options, progress, &problem.bundle);
+  const auto positions = TakePoints(problem, noise.sigma_px, segment);
 
   const PoseOptimizer optimizer({});
   Segment refined;

@@ -151,11 +151,11 @@ void Mapper::RefineWindow(MapUpdate* update) {
   std::vector<std::int64_t> tracks;
   for (const auto& [track, seen] : sightings) {
     if (seen.size() < 2) continue;
-    const SE3& anchor = problem.T_cam_world[seen.front().first];
-    const Eigen::Vector3d p = anchor * map_.points[track].position;
+    const int anchor = seen.front().first;
+    const Eigen::Vector3d p = problem.T_cam_world[anchor] * map_.points[track].position;
     if (!(p.z() > 0.0)) continue;
     const int id = static_cast<int>(problem.points.size());
-    problem.points.push_back({anchor.Inverse(), Eigen::Vector3d(p.x(), p.y(), 1.0) / p.z()});
+    problem.points.push_back({anchor, Eigen::Vector3d(p.x(), p.y(), 1.0) / p.z()});
     tracks.push_back(track);
     for (const auto& [frame, feature] : seen) {
       problem.observations.push_back({frame, id, feature->x, feature->px_per_unit});
@@ -165,8 +165,9 @@ void Mapper::RefineWindow(MapUpdate* update) {
   for (int i = begin; i < end; ++i) map_.key_frames[i].T_cam_world = problem.T_cam_world[i - begin];
   for (std::size_t p = 0; p < tracks.size(); ++p) {
     if (!(problem.points[p].inverse_depth.z() > 0.0)) continue;
-    map_.points[tracks[p]].position = problem.points[p].World();
-    update->points.emplace_back(tracks[p], problem.points[p].World());
+    Point& point = map_.points[tracks[p]];
+    point.position = WorldPosition(problem, problem.points[p]);
+    update->points.emplace_back(point.track, point.position);
   }
 }
 

@@ -23,12 +23,11 @@ BundleProblem Drive(int frames, int points, double noise_px, std::uint32_t seed)
   for (int p = 0; p < points; ++p) {
     const int first = p % (frames - 4);
     const double z = depth(random);
-    const SE3 T_world_anchor = problem.T_cam_world[first].Inverse();
-    BundlePoint point{T_world_anchor, {side(random), side(random), 1.0 / z}};
+    const BundlePoint point{first, {side(random), side(random), 1.0 / z}};
     const int id = static_cast<int>(problem.points.size());
     problem.points.push_back(point);
     for (int i = first; i < std::min(frames, first + 8); ++i) {
-      const Eigen::Vector3d q = problem.T_cam_world[i] * point.World();
+      const Eigen::Vector3d q = problem.T_cam_world[i] * WorldPosition(problem, point);
       if (q.z() < 1.0) break;
       const Eigen::Vector2d noise(normal(random), normal(random));
       problem.observations.push_back({i, id, q.head<2>() / q.z() + noise / 226.0, px_per_unit});
@@ -78,20 +77,20 @@ TEST(BundleAdjuster, JacobiansMatchFiniteDifferences) {
   const auto problem = Drive(8, 6, 15.0, 1);
   const double h = 1e-6;
   for (const auto& observation : problem.observations) {
-    const SE3& pose = problem.T_cam_world[observation.frame];
     const BundlePoint& point = problem.points[observation.point];
+    const SE3 pose = problem.T_cam_world[observation.frame] * problem.T_cam_world[point.anchor].Inverse();
+    const Eigen::Vector3d& at_point = point.inverse_depth;
     BundleJacobian at, plus, minus;
-    ASSERT_TRUE(Linearize(pose, point, observation, &at));
+    ASSERT_TRUE(Linearize(pose, at_point, observation, &at));
     for (int k = 0; k < 6; ++k) {
       const Vector6d d = h * Vector6d::Unit(k);
-      ASSERT_TRUE(Linearize(SE3::Exp(d) * pose, point, observation, &plus));
-      ASSERT_TRUE(Linearize(SE3::Exp(-d) * pose, point, observation, &minus));
+      ASSERT_TRUE(Linearize(SE3::Exp(d) * pose, at_point, observation, &plus));
+      ASSERT_TRUE(Linearize(SE3::Exp(-d) * pose, at_point, observation, &minus));
       EXPECT_LT((at.by_pose.col(k) - (plus.error - minus.error) / (2 * h)).norm(), 1e-4);
     }
     for (int k = 0; k < 3; ++k) {
-      BundlePoint more = point, less = point;
-      more.inverse_depth[k] += h;
-      less.inverse_depth[k] -= h;
+      const Eigen::Vector3d more = at_point + h * Eigen::Vector3d::Unit(k);
+      const Eigen::Vector3d less = at_point - h * Eigen::Vector3d::Unit(k);
       ASSERT_TRUE(Linearize(pose, more, observation, &plus));
       ASSERT_TRUE(Linearize(pose, less, observation, &minus));
       EXPECT_LT((at.by_point.col(k) - (plus.error - minus.error) / (2 * h)).norm(), 1e-3);

@@ -7,13 +7,11 @@
 
 namespace evo {
 
-/// A point as (alpha, beta, rho) in the camera of an anchor whose pose stays as it is: X_anchor = (alpha, beta, 1) /
-/// rho. Inverse depth makes far points as harmless as near ones; rho = 0 is a point at infinity.
+/// A point as (alpha, beta, rho) in the camera of its anchor frame: X_anchor = (alpha, beta, 1) / rho.
+/// Inverse depth makes far points as harmless as near ones; rho = 0 is a point at infinity.
 struct BundlePoint {
-  SE3 T_world_anchor;
+  int anchor = 0;                 ///< frame
   Eigen::Vector3d inverse_depth;  ///< alpha, beta, rho
-
-  Eigen::Vector3d World() const;
 };
 
 struct BundleObservation {
@@ -26,14 +24,17 @@ struct BundleObservation {
 struct BundleProblem {
   std::vector<SE3> T_cam_world;  ///< in order of time
   int fixed_frames = 1;          ///< the first so many poses stay: 1 leaves the scale free, 2 holds it
+  int scale_frame = -1;          ///< a frame whose distance from the first is held, to hold the scale; -1: none
   std::vector<BundlePoint> points;
   std::vector<BundleObservation> observations;  ///< in order of points, then of frames
 };
 
 struct BundleOptions {
   int iterations = 20;
-  double loss_px = 1.0;             ///< Cauchy's width
-  double relative_decrease = 1e-5;  ///< of the cost in one step: stop below
+  double loss_px = 1.0;  ///< Cauchy's width
+  /// Correlation of a track's noise between one observation and the next, in [0, 1): the drift of a tracker's template.
+  double correlation = 0.0;
+  double relative_decrease = 1e-8;  ///< of the cost in one step: stop below
 };
 
 struct BundleSummary {
@@ -43,21 +44,27 @@ struct BundleSummary {
 };
 
 /// The residual in raw pixels (to first order about the observation) and its derivatives by the left twist of the
-/// camera and by the point's three numbers. False if the point is behind the camera.
+/// camera and by the point's three numbers, the anchor held. False if the point is behind the camera.
 struct BundleJacobian {
   Eigen::Vector2d error;
   Eigen::Matrix<double, 2, 6> by_pose;
   Eigen::Matrix<double, 2, 3> by_point;
 };
-bool Linearize(const SE3& T_cam_world, const BundlePoint& point, const BundleObservation& observation,
+bool Linearize(const SE3& T_cam_anchor, const Eigen::Vector3d& inverse_depth, const BundleObservation& observation,
                BundleJacobian* jacobian);
 
 /// Refines poses and points together: Levenberg-Marquardt on Cauchy's loss of the reprojection errors, the points
 /// eliminated by Schur's complement, the poses solved by a skyline Cholesky factorisation.
+/// The noise of a track is taken for a stationary first-order autoregression e' = c e + white noise. Its inverse
+/// covariance has three diagonals: it is a sum of squares of the errors and of the differences of neighbouring errors,
+/// and the loss applies to either kind, so that a slip costs one difference and not the rest of the track.
 BundleSummary AdjustBundle(const BundleOptions& options, BundleProblem* problem);
 
-/// Residual norms in px, infinite behind the camera.
-std::vector<double> BundleResiduals(const BundleProblem& problem);
+/// Where a point of the problem is in the world; infinite for rho = 0.
+Eigen::Vector3d WorldPosition(const BundleProblem& problem, const BundlePoint& point);
+
+/// The residual of every observation in px, infinite behind the camera.
+std::vector<Eigen::Vector2d> BundleErrors(const BundleProblem& problem);
 
 /// For every pose that is free, the first free pose that shares a point with it: the skyline of the reduced system.
 std::vector<int> BundleSkyline(const BundleProblem& problem);

@@ -28,8 +28,8 @@ struct Seed {
 };
 
 struct DepthFilterOptions {
-  double pixel_noise = 1.0;        ///< px of angle that a measurement may be off, one sigma
-  double convergence = 200.0;      ///< converged when sigma < z_range / convergence
+  double pixel_noise = 0.5;        ///< px of angle that a measurement may be off, one sigma
+  double convergence = 60.0;       ///< converged when sigma < z_range / convergence
   double epipolar_px = 2.5;        ///< a sighting farther from its epipolar line is a failed match
   double min_inlier_ratio = 0.35;  ///< a seed with a smaller a / (a + b) is dropped
   int max_age = 3;                 ///< key frames after which an unconverged seed is dropped

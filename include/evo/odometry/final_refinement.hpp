@@ -12,9 +12,9 @@ namespace evo {
 struct FinalRefinementOptions {
   bool enabled = true;
   double min_disparity_px = 0.5;  ///< frames with less image motion since the last one taken are left to the end
-  int iterations = 20;            ///< of each of the two rounds
-  double loss_px = 1.0;           ///< width of Cauchy's loss in the first round
-  double budget = 2e7;            ///< 6x6 block products an iteration may cost; beyond it frames are thinned out
+  int rounds = 3;                 ///< of adjustment, the noise measured anew before each
+  int iterations = 10;            ///< of each round
+  double budget = 4e6;            ///< 6x6 block products an iteration may cost; beyond it frames are thinned out
 };
 void Register(Parameters& parameters, FinalRefinementOptions& options);
 
