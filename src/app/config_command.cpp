@@ -4,6 +4,7 @@
 #include "app/commands.hpp"
 #include "app/config.hpp"
 #include "app/options.hpp"
+#include "evo/core/error.hpp"
 
 namespace evo::app {
 
@@ -16,6 +17,9 @@ struct ConfigArguments {
 };
 
 void RunConfig(const ConfigArguments& arguments) {
+  if (arguments.print != arguments.check.empty()) {
+    throw Error(ErrorKind::kUsage, "config: give either --print or --check FILE; see evo-run config --help");
+  }
   Config config;
   arguments.common.Apply(&config);
   if (arguments.print) {
@@ -31,9 +35,8 @@ void RunConfig(const ConfigArguments& arguments) {
 Command AddConfigCommand(CLI::App& app) {
   auto arguments = std::make_shared<ConfigArguments>();
   auto* const parser = app.add_subcommand("config", "Print all parameters or check a configuration file");
-  auto* const action = parser->add_option_group("action")->require_option(1);
-  action->add_flag("--print", arguments->print, "print every parameter with its value, range and meaning as YAML");
-  action->add_option("--check", arguments->check, "report the first mistake in a configuration file")
+  parser->add_flag("--print", arguments->print, "print every parameter with its value, range and meaning as YAML");
+  parser->add_option("--check", arguments->check, "report the first mistake in a configuration file")
       ->type_name("FILE");
   AddConfigurationOptions(*parser, arguments->common);
   parser->footer("Example:\n  evo-run config --print > mine.yaml");

@@ -3,6 +3,7 @@
 
 #include "app/commands.hpp"
 #include "app/config.hpp"
+#include "app/error_place.hpp"
 #include "app/evaluation_results.hpp"
 #include "app/interrupt.hpp"
 #include "app/options.hpp"
@@ -66,8 +67,10 @@ void RunEvaluate(const EvaluateArguments& arguments, const std::vector<std::stri
     estimate = ReadTum(arguments.estimate);
     truth = ReadGroundTruth(arguments.ground_truth, arguments.common.Source());
   });
-  const auto evaluation =
-      record.Time("evaluate", [&] { return Evaluate(truth, estimate, alignments, interval, config.evaluation); });
+  const auto evaluation = record.Time("evaluate", [&] {
+    return NamingPlace(arguments.estimate + " against " + arguments.ground_truth,
+                       [&] { return Evaluate(truth, estimate, alignments, interval, config.evaluation); });
+  });
   const std::string sequence = arguments.sequence.empty() ? SequenceName(arguments.ground_truth) : arguments.sequence;
   record.Time("write", [&] { WriteEvaluationResults(arguments.out, sequence, evaluation, !arguments.no_plots); });
 

@@ -47,8 +47,8 @@ void InterruptGuard::Wait() {
   int signal = 0;
   ::sigwait(&signals_, &signal);
   if (done_) return;
-  RemoveUnfinished(folder_);
   std::fputs("evo-run: error: interrupted; results written so far are whole\n", stderr);
+  RemoveUnfinished(folder_);  // last, since the other threads still run
   ::signal(signal, SIG_DFL);
   ::pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);
   ::raise(signal);

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <iostream>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,8 @@ int Run(int argc, char** argv) {
   for (const auto& command : commands) {
     if (command.parser->parsed()) command.run(std::vector<std::string>(argv, argv + argc));
   }
+  std::cout.flush();
+  if (!std::cout) throw evo::Error(evo::ErrorKind::kOutput, "standard output: writing failed; is the disk full?");
   return 0;
 }
 

@@ -24,16 +24,16 @@ void RunOdometryCommand(const OdometryArguments& arguments, const std::vector<st
   arguments.common.Apply(&config);
   auto results = OdometryResultNames();
   results.emplace_back("manifest.json");
+  CheckOutputFolder(arguments.stage.out, results, arguments.common.force);
   RunRecord record(command_line, config.parameters);
   const Camera camera = OpenCamera(arguments.calibration, arguments.sensor);
   const Tracks tracks = record.Time("read", [&] { return ReadTracks(arguments.tracks); });
   record.AddInput("tracks", arguments.tracks);
   record.AddInput("calibration", arguments.calibration);
-  CheckOutputFolder(arguments.stage.out, results, arguments.common.force);
   const InterruptGuard guard(arguments.stage.out);
   ThreadPool pool(arguments.common.threads);
   const StageContext context{config, &pool, &record, arguments.stage, !arguments.common.quiet};
-  const OdometryResult result = RunOdometryStage(context, tracks, camera);
+  const OdometryResult result = RunOdometryStage(context, tracks, arguments.tracks, camera);
   WriteManifest(context.options.out / "manifest.json", record.manifest);
   std::cout << FormatOdometry(result);
 }

@@ -25,8 +25,8 @@ void AddConfigurationOptions(CLI::App& command, CommonOptions& options) {
 }
 
 void AddComputeOptions(CLI::App& command, CommonOptions& options) {
-  command.add_option("--threads", options.threads, "threads to use; 0 means one for each processor")
-      ->check(CLI::Range(0, 1024))
+  command.add_option("--threads", options.threads, "threads to use, up to 1024; default: one for each processor")
+      ->check(CLI::Range(0, 1024).description(""))
       ->type_name("N");
   command.add_flag("--force", options.force, "overwrite earlier results in the --out folder");
 }
@@ -34,14 +34,17 @@ void AddComputeOptions(CLI::App& command, CommonOptions& options) {
 void AddGroundTruthSourceOption(CLI::App& command, CommonOptions& options) {
   command
       .add_option("--ground-truth-source", options.ground_truth_source,
-                  "which trajectory of an MVSEC ground truth file")
+                  "trajectory of an MVSEC _gt.hdf5: loam is davis/left/odometry, cartographer davis/left/pose")
       ->check(CLI::IsMember({"loam", "cartographer"}).description(""))
       ->capture_default_str()
       ->type_name("loam|cartographer");
 }
 
 void AddAlignmentOption(CLI::App& command, std::string& align) {
-  command.add_option("--align", align, "comma-separated list of none, origin, origin-scale, se3, sim3, first:SECONDS")
+  command
+      .add_option("--align", align,
+                  "comma-separated alignments: none, origin (first pose), origin-scale (and one scale), se3, sim3, "
+                  "first:SECONDS (sim3 on the beginning)")
       ->capture_default_str()
       ->type_name("LIST");
 }

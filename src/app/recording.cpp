@@ -80,7 +80,7 @@ Recording OpenRecording(const RecordingArguments& arguments, RunRecord* record) 
   auto reader = OpenEvents(files.events, interval, camera.width(), camera.height());
   record->AddInput("events", files.events);
   record->AddInput("calibration", calibration);
-  return {std::move(camera), std::move(reader), files.ground_truth};
+  return {std::move(camera), files.events, std::move(reader), interval, files.ground_truth};
 }
 
 }  // namespace evo::app

@@ -31,7 +31,9 @@ void AddSensorOption(CLI::App& command, std::string& sensor);
 /// A recording that has been found and whose beginning has been read.
 struct Recording {
   Camera camera;
+  std::filesystem::path events;
   std::unique_ptr<EventReader> reader;
+  Interval interval;
   std::optional<std::filesystem::path> ground_truth;  ///< found beside the events
 };
 

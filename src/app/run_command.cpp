@@ -5,6 +5,7 @@
 #include <span>
 
 #include "app/commands.hpp"
+#include "app/error_place.hpp"
 #include "app/evaluation_results.hpp"
 #include "app/interrupt.hpp"
 #include "app/options.hpp"
@@ -27,14 +28,41 @@ struct RunArguments {
   StageOptions stage;
 };
 
-std::optional<Trajectory> OpenGroundTruth(const RunArguments& arguments, const Recording& recording,
-                                          RunRecord* record) {
+struct GroundTruth {
+  std::filesystem::path path;
+  Trajectory trajectory;
+};
+
+std::optional<GroundTruth> OpenGroundTruth(const RunArguments& arguments, const Recording& recording,
+                                           RunRecord* record) {
   std::filesystem::path path = arguments.ground_truth;
   if (path.empty() && recording.ground_truth) path = *recording.ground_truth;
   if (path.empty()) return std::nullopt;
-  Trajectory truth = ReadGroundTruth(path, arguments.common.Source());
+  Trajectory trajectory = ReadGroundTruth(path, arguments.common.Source());
   record->AddInput("ground_truth", path);
-  return truth;
+  return GroundTruth{path, std::move(trajectory)};
+}
+
+/// Reports the ground truth of another recording before the work, not after it. `offset` is added to the events' clock.
+void RequireOverlap(const GroundTruth& truth, const Recording& recording, TimeNs offset) {
+  const auto& interval = recording.interval;
+  const TimeNs first = recording.reader->first_stamp();
+  const TimeNs from = first + interval.from + offset;
+  const TimeNs to = (interval.to ? first + *interval.to : recording.reader->last_stamp()) + offset;
+  const TimeNs begin = truth.trajectory.front().t;
+  const TimeNs end = truth.trajectory.back().t;
+  if (begin <= to && end >= from) return;
+  throw Error(ErrorKind::kNothingToDo, truth.path.string() + ": its poses from " + FormatTime(begin) + " s to " +
+                                           FormatTime(end) + " s do not overlap the events from " + FormatTime(from) +
+                                           " s to " + FormatTime(to) + " s; give the ground truth of this recording");
+}
+
+std::vector<std::string> ResultNames(const std::vector<Alignment>& alignments) {
+  auto results = TrackingResultNames();
+  for (const auto& name : OdometryResultNames()) results.push_back(name);
+  for (const auto& name : EvaluationResultNames(alignments)) results.push_back(name);
+  results.emplace_back("manifest.json");
+  return results;
 }
 
 /// Drops the alignments that these trajectories do not determine: a straight line, say, leaves sim3's roll open.
@@ -52,45 +80,50 @@ void KeepDetermined(const Trajectory& truth, const Trajectory& estimate, const E
   });
 }
 
-void Judge(const StageContext& context, const Trajectory& truth, const Trajectory& estimate,
-           const std::vector<TimeNs>& frames, std::vector<Alignment> alignments, bool only_determined) {
-  // The truth of the whole interval counts: an estimate that covers a part of it must not look complete.
-  const EvaluationInterval interval{frames.front(), frames.back()};
+/// `only_determined`: as far as the motion allows. Prints the summary.
+void RunEvaluationStage(const StageContext& context, const GroundTruth& truth, const Trajectory& estimate,
+                        const std::vector<TimeNs>& frames, std::vector<Alignment> alignments, bool only_determined) {
   const EvaluationOptions& options = context.config.evaluation;
-  if (only_determined) KeepDetermined(truth, estimate, interval, options, &alignments);
-  if (alignments.empty()) return;
-  const Evaluation evaluation =
-      context.record->Time("evaluate", [&] { return Evaluate(truth, estimate, alignments, interval, options); });
-  const auto& ground_truth = context.record->manifest.inputs.back().path;
-  context.record->Time("write_evaluation", [&] {
-    WriteEvaluationResults(context.options.out, SequenceName(ground_truth), evaluation, !context.options.no_plots);
+  const TimeNs offset = FromSeconds(options.association.estimate_clock_offset_s);
+  // The truth of the whole interval counts: an estimate that covers a part of it must not look complete.
+  const EvaluationInterval interval{frames.front() + offset, frames.back() + offset};
+  NamingPlace((context.options.out / "trajectory.txt").string() + " against " + truth.path.string(), [&] {
+    if (only_determined) KeepDetermined(truth.trajectory, estimate, interval, options, &alignments);
+    if (alignments.empty()) return;
+    const Evaluation evaluation = context.record->Time(
+        "evaluate", [&] { return Evaluate(truth.trajectory, estimate, alignments, interval, options); });
+    context.record->Time("write_evaluation", [&] {
+      WriteEvaluationResults(context.options.out, SequenceName(truth.path), evaluation, !context.options.no_plots);
+    });
+    std::cout << FormatSummary(evaluation);
   });
-  std::cout << FormatSummary(evaluation);
 }
 
 void RunAll(const RunArguments& arguments, const std::vector<std::string>& command_line) {
   Config config;
   arguments.common.Apply(&config);
   const auto alignments = ParseAlignments(arguments.align.empty() ? kUsualAlignments : arguments.align);
+  CheckOutputFolder(arguments.stage.out, ResultNames(alignments), arguments.common.force);
   RunRecord record(command_line, config.parameters);
   // Every input is opened before any work, so that a wrong one is reported at once.
   Recording recording = OpenRecording(arguments.recording, &record);
   const auto truth = OpenGroundTruth(arguments, recording, &record);
-
-  auto results = TrackingResultNames();
-  for (const auto& name : OdometryResultNames()) results.push_back(name);
-  for (const auto& name : EvaluationResultNames(alignments)) results.push_back(name);
-  results.emplace_back("manifest.json");
-  CheckOutputFolder(arguments.stage.out, results, arguments.common.force);
+  if (truth) {
+    RequireOverlap(*truth, recording, FromSeconds(config.evaluation.association.estimate_clock_offset_s));
+  }
   const InterruptGuard guard(arguments.stage.out);
   ThreadPool pool(arguments.common.threads);
   const StageContext context{config, &pool, &record, arguments.stage, !arguments.common.quiet};
 
   const TrackingOutcome tracking = RunTrackingStage(context, &recording);
   std::cout << FormatTracking(tracking) << std::flush;
-  const OdometryResult odometry = RunOdometryStage(context, tracking.result.tracks, recording.camera);
+  const OdometryResult odometry =
+      RunOdometryStage(context, tracking.result.tracks, context.options.out / "tracks.txt", recording.camera);
   std::cout << FormatOdometry(odometry) << FormatSpeed(tracking.result, record.manifest, pool.size()) << std::flush;
-  if (truth) Judge(context, *truth, odometry.trajectory, tracking.result.frames, alignments, arguments.align.empty());
+  if (truth) {
+    RunEvaluationStage(context, *truth, odometry.trajectory, tracking.result.frames, alignments,
+                       arguments.align.empty());
+  }
   WriteManifest(context.options.out / "manifest.json", record.manifest);
   std::cout << "results    " << context.options.out.string() << '\n';
 }
@@ -106,6 +139,7 @@ Command AddRunCommand(CLI::App& app) {
                    "MVSEC _gt.hdf5, UZH groundtruth.txt or TUM text; default: the one in the sequence's folder, if any")
       ->type_name("FILE");
   AddAlignmentOption(*parser, arguments->align);
+  parser->get_option("--align")->default_str(kUsualAlignments);  // as far as the motion determines them
   AddStageOptions(*parser, arguments->stage);
   AddDrawingOption(*parser, arguments->stage);
   AddConfigurationOptions(*parser, arguments->common);

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <set>
 
+#include "app/error_place.hpp"
 #include "evo/core/progress.hpp"
 #include "evo/io/trajectory_io.hpp"
 #include "evo/odometry/map_writer.hpp"
@@ -58,7 +59,7 @@ void AddDrawingOption(CLI::App& command, StageOptions& options) {
   command
       .add_option("--draw-every", options.draw_every_s,
                   "draw the event frame with its tracks into images/ every so many seconds")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Validator(CLI::PositiveNumber).description(""))
       ->type_name("S");
 }
 
@@ -66,27 +67,32 @@ std::vector<std::string> TrackingResultNames() { return {"tracks.txt", "lifetime
 
 TrackingOutcome RunTrackingStage(const StageContext& context, Recording* recording) {
   const TimeNs first = recording->reader->first_stamp();
-  TimeNs next_drawing = 0;
+  const TimeNs interval = FromSeconds(context.options.draw_every_s);
+  TimeNs next_drawing = first;
   const auto observe = [&](const TrackingView& view) {
     if (view.t < next_drawing) return;
     DrawFrame(context.options.out / "images", view, first);
-    next_drawing = view.t + FromSeconds(context.options.draw_every_s);
+    next_drawing = std::max(next_drawing + interval, view.t);
   };
   TrackingOutcome outcome;
   outcome.result = context.record->Time("track", [&] {
     Progress progress("tracking", context.show_progress);
-    return TrackEvents(
-        recording->reader.get(), recording->camera.width(), recording->camera.height(), context.config.tracker,
-        context.pool, [&](double done) { progress.Update(done); },
-        context.options.draw_every_s > 0.0 ? observe : std::function<void(const TrackingView&)>{});
+    return NamingPlace(recording->events.string(), [&] {
+      return TrackEvents(
+          recording->reader.get(), recording->camera.width(), recording->camera.height(), context.config.tracker,
+          context.pool, [&](double done) { progress.Update(done); },
+          context.options.draw_every_s > 0.0 ? observe : std::function<void(const TrackingView&)>{});
+    });
   });
+  RoundAsWritten(&outcome.result.tracks);  // the odometry from tracks.txt shall give the same trajectory
   outcome.lifetimes = ComputeLifetimes(outcome.result.tracks, outcome.result.frames);
   context.record->Time("write_tracks", [&] {
     WriteTracks(context.options.out / "tracks.txt", outcome.result.tracks,
                 {"pixels of the raw sensor, each at the very instant of its stamp"});
     WriteLifetimes(context.options.out / "lifetime.csv", outcome.lifetimes);
-    if (!context.options.no_plots)
+    if (!context.options.no_plots) {
       Gnuplot(context.options.out / "plots").Draw("lifetime", LifetimeFigure("lifetime", outcome.lifetimes));
+    }
   });
   context.record->AddCount("events", outcome.result.events);
   context.record->AddCount("event_frames", outcome.result.frames.size());
@@ -98,11 +104,14 @@ TrackingOutcome RunTrackingStage(const StageContext& context, Recording* recordi
 
 std::vector<std::string> OdometryResultNames() { return {"trajectory.txt", "map.ply"}; }
 
-OdometryResult RunOdometryStage(const StageContext& context, const Tracks& tracks, const Camera& camera) {
+OdometryResult RunOdometryStage(const StageContext& context, const Tracks& tracks, const std::filesystem::path& source,
+                                const Camera& camera) {
   OdometryResult result = context.record->Time("odometry", [&] {
     Progress progress("odometry", context.show_progress);
-    return RunOdometry(tracks, camera, context.config.odometry, context.pool->size(),
-                       [&](double done) { progress.Update(done); });
+    return NamingPlace(source.string(), [&] {
+      return RunOdometry(tracks, camera, context.config.odometry, context.pool->size(),
+                         [&](double done) { progress.Update(done); });
+    });
   });
   for (const TimeNs t : result.lost) spdlog::debug("no pose at {} s", FormatTime(t));
   for (std::size_t i = 1; i < result.bootstraps.size(); ++i) {

@@ -47,8 +47,10 @@ std::vector<std::string> TrackingResultNames();
 TrackingOutcome RunTrackingStage(const StageContext& context, Recording* recording);
 
 std::vector<std::string> OdometryResultNames();
-/// Runs the odometry and writes trajectory.txt and map.ply. Throws Error.
-OdometryResult RunOdometryStage(const StageContext& context, const Tracks& tracks, const Camera& camera);
+/// Runs the odometry and writes trajectory.txt and map.ply. `source` is the file of the tracks, for messages. Throws
+/// Error.
+OdometryResult RunOdometryStage(const StageContext& context, const Tracks& tracks, const std::filesystem::path& source,
+                                const Camera& camera);
 
 /// The stages' summaries for people: aligned lines that end with a newline.
 std::string FormatTracking(const TrackingOutcome& outcome);

@@ -22,9 +22,9 @@ void RunTrack(const TrackArguments& arguments, const std::vector<std::string>& c
   arguments.common.Apply(&config);
   auto results = TrackingResultNames();
   results.emplace_back("manifest.json");
+  CheckOutputFolder(arguments.stage.out, results, arguments.common.force);
   RunRecord record(command_line, config.parameters);
   Recording recording = OpenRecording(arguments.recording, &record);
-  CheckOutputFolder(arguments.stage.out, results, arguments.common.force);
   const InterruptGuard guard(arguments.stage.out);
   ThreadPool pool(arguments.common.threads);
   const StageContext context{config, &pool, &record, arguments.stage, !arguments.common.quiet};

@@ -9,7 +9,6 @@
 #include <functional>
 #include <iterator>
 #include <numeric>
-#include <sstream>
 #include <utility>
 
 #include "evo/core/error.hpp"
@@ -162,26 +161,40 @@ std::string Parameters::Format(const Entry& entry) {
   return *std::get<std::string*>(entry.value);
 }
 
-std::string Parameters::ToYaml() const {
-  std::ostringstream yaml;
-  std::string section;
-  for (const auto& entry : entries_) {
-    const auto dot = entry.name.rfind('.');
-    const std::string group = dot == std::string::npos ? "" : entry.name.substr(0, dot);
-    if (group != section) {
-      if (!section.empty()) yaml << '\n';
-      yaml << group << ":\n";
-      section = group;
-    }
-    yaml << (group.empty() ? "" : "  ") << entry.name.substr(group.empty() ? 0 : dot + 1) << ": " << Format(entry)
-         << "  # " << entry.help;
-    if (std::holds_alternative<double*>(entry.value) || std::holds_alternative<int*>(entry.value)) {
-      yaml << "; " << FormatNumber(entry.lowest) << " to " << FormatNumber(entry.highest);
-    }
-    for (std::size_t i = 0; i < entry.choices.size(); ++i) yaml << (i ? ", " : "; ") << entry.choices[i];
-    yaml << '\n';
+std::string Parameters::Describe(const Entry& entry) {
+  std::string text = entry.help;
+  if (std::holds_alternative<double*>(entry.value) || std::holds_alternative<int*>(entry.value)) {
+    text += "; " + FormatNumber(entry.lowest) + " to " + FormatNumber(entry.highest);
   }
-  return yaml.str();
+  for (std::size_t i = 0; i < entry.choices.size(); ++i) text += (i ? ", " : "; ") + entry.choices[i];
+  return text;
+}
+
+/// What is called `prefix`NAME, then group by group what is called `prefix`GROUP.NAME: each key of the YAML occurs
+/// once, whatever the order of registration.
+void Parameters::Print(const std::string& prefix, const std::string& indent, std::string* yaml) const {
+  std::vector<std::string> groups;
+  for (const auto& entry : entries_) {
+    if (!entry.name.starts_with(prefix)) continue;
+    const std::string name = entry.name.substr(prefix.size());
+    const auto dot = name.find('.');
+    if (dot == std::string::npos) {
+      *yaml += indent + name + ": " + Format(entry) + "  # " + Describe(entry) + '\n';
+    } else if (std::ranges::find(groups, name.substr(0, dot)) == groups.end()) {
+      groups.push_back(name.substr(0, dot));
+    }
+  }
+  for (const auto& group : groups) {
+    if (!yaml->empty()) *yaml += '\n';
+    *yaml += indent + group + ":\n";
+    Print(prefix + group + ".", indent + "  ", yaml);
+  }
+}
+
+std::string Parameters::ToYaml() const {
+  std::string yaml;
+  Print("", "", &yaml);
+  return yaml;
 }
 
 std::vector<std::pair<std::string, std::string>> Parameters::Values() const {

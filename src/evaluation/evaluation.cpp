@@ -18,6 +18,16 @@ Trajectory Crop(const Trajectory& trajectory, TimeNs from, TimeNs to) {
   return first < last ? Trajectory(first, last) : Trajectory();
 }
 
+/// The truth of the interval and, where they are no farther than `longest_gap`, the poses just before and after it:
+/// with them it reaches to where the estimate begins and ends.
+Trajectory Cover(const Trajectory& truth, TimeNs from, TimeNs to, TimeNs longest_gap) {
+  auto first = std::ranges::lower_bound(truth, from, {}, &StampedPose::t);
+  auto last = std::ranges::upper_bound(truth, to, {}, &StampedPose::t);
+  if (first != truth.begin() && from - (first - 1)->t <= longest_gap) --first;
+  if (last != truth.end() && last->t - to <= longest_gap) ++last;
+  return {first, last};
+}
+
 /// `estimate` with its stamps moved to the clock of the truth, cut to the interval.
 Trajectory MoveToTruthClock(Trajectory estimate, TimeNs offset, TimeNs from, TimeNs to) {
   for (auto& pose : estimate) pose.t += offset;
@@ -145,7 +155,7 @@ Evaluation Evaluate(const Trajectory& truth, const Trajectory& estimate, std::sp
   const Trajectory judged = MoveToTruthClock(estimate, offset, evaluation.from, evaluation.to);
   const auto coverage = ComputeCoverage(judged, evaluation.from, evaluation.to, evaluation.longest_gap);
   const auto distances = ComputeDistances(truth, pairs);
-  evaluation.truth = Crop(truth, evaluation.from, evaluation.to);
+  evaluation.truth = Cover(truth, evaluation.from, evaluation.to, evaluation.longest_gap);
   evaluation.up = UpDirection(options.up, truth);
   evaluation.path_m = distances.back();
   evaluation.coverage = coverage.share;

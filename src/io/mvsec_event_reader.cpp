@@ -15,7 +15,7 @@ class MvsecEventReader : public EventReader {
       : file_(path), events_(file_), width_(width), height_(height), first_stamp_(events_.StampAt(0)) {
     begin_ = interval.from > 0 ? events_.FirstAtOrAfter(Later(first_stamp_, interval.from)) : 0;
     end_ = interval.to ? events_.FirstAtOrAfter(Later(first_stamp_, *interval.to)) : events_.rows();
-    if (begin_ >= end_) throw NothingInInterval(path, interval, first_stamp_, events_.StampAt(events_.rows() - 1));
+    if (begin_ >= end_) throw NothingInInterval(path, interval, first_stamp_, last_stamp());
     row_ = begin_;
   }
 
@@ -33,6 +33,7 @@ class MvsecEventReader : public EventReader {
   }
 
   TimeNs first_stamp() const override { return first_stamp_; }
+  TimeNs last_stamp() const override { return events_.StampAt(events_.rows() - 1); }
   double progress() const override { return static_cast<double>(row_ - begin_) / static_cast<double>(end_ - begin_); }
 
  private:

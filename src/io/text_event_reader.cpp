@@ -33,7 +33,7 @@ class TextEventReader : public EventReader {
     first_stamp_ = first->event.t;
     begin_ = interval.from > 0 ? FirstAtOrAfter(Later(first_stamp_, interval.from)) : first->offset;
     end_ = interval.to ? FirstAtOrAfter(Later(first_stamp_, *interval.to)) : file_.size();
-    if (begin_ >= end_) throw NothingInInterval(path, interval, first_stamp_, LastStamp());
+    if (begin_ >= end_) throw NothingInInterval(path, interval, first_stamp_, last_stamp());
     offset_ = begin_;
   }
 
@@ -51,6 +51,14 @@ class TextEventReader : public EventReader {
   }
 
   TimeNs first_stamp() const override { return first_stamp_; }
+  TimeNs last_stamp() const override {
+    for (std::int64_t back = kUsualLine;; back *= 2) {
+      TimeNs last = first_stamp_;
+      auto found = EventAtOrAfter(std::max<std::int64_t>(file_.size() - back, 0));
+      for (; found; found = EventAtOrAfter(found->next)) last = found->event.t;
+      if (last != first_stamp_ || back >= file_.size()) return last;
+    }
+  }
   double progress() const override {
     return static_cast<double>(offset_ - begin_) / static_cast<double>(end_ - begin_);
   }
@@ -114,15 +122,6 @@ class TextEventReader : public EventReader {
     }
     const auto found = EventAtOrAfter(low);
     return found ? found->offset : file_.size();
-  }
-
-  TimeNs LastStamp() const {
-    for (std::int64_t back = kUsualLine;; back *= 2) {
-      TimeNs last = first_stamp_;
-      auto found = EventAtOrAfter(std::max<std::int64_t>(file_.size() - back, 0));
-      for (; found; found = EventAtOrAfter(found->next)) last = found->event.t;
-      if (last != first_stamp_ || back >= file_.size()) return last;
-    }
   }
 
   /// Fills buffer_ with as many whole lines from offset_ on as it holds, the last one ended by a \n in any case.

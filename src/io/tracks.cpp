@@ -87,6 +87,14 @@ Tracks ReadTracks(const std::filesystem::path& path) {
   return Unique(lines, rows, haste);
 }
 
+void RoundAsWritten(Tracks* tracks) {
+  constexpr double kSteps = 1e4;
+  for (auto& observation : *tracks) {
+    observation.x = std::round(observation.x * kSteps) / kSteps;
+    observation.y = std::round(observation.y * kSteps) / kSteps;
+  }
+}
+
 void WriteTracks(const std::filesystem::path& path, const Tracks& tracks, const std::vector<std::string>& comments) {
   OutputFile file(path);
   file.stream() << "# id timestamp x y\n";

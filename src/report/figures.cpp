@@ -114,7 +114,7 @@ Figure TrajectoryFigure(const std::string& name, const Evaluation& evaluation, c
          << "' title 'ground truth', \\\n"
          << "  data index 1 using 2:3 with lines linewidth 2 linecolor '" << kEstimateGreen << "' title 'estimate ("
          << result.alignment.name << ")', \\\n"
-         << "  data index 0 every ::0::0 using 2:3 with points pointtype 7 pointsize 1.1 linecolor '#000000' title "
+         << "  data index 1 every ::0::0 using 2:3 with points pointtype 7 pointsize 1.1 linecolor '#000000' title "
             "'start'\n";
   figure.script = script.str();
   return figure;
@@ -149,7 +149,7 @@ Figure ErrorFigure(const std::string& name, const Evaluation& evaluation, const 
     script << "set border 11 linecolor '#404040'\n"
            << "set y2range " << Range{percent * meters.low, percent * meters.high} << "\n"
            << "set y2tics textcolor '#202020'\n"
-           << "set y2label '% of the path of " << std::lround(evaluation.path_m) << " m' offset 1\n";
+           << "set y2label '% of the path of " << Print("%.1f", evaluation.path_m) << " m' offset 1\n";
   }
   script << "data = '" << name << ".dat'\n"
          << "plot data using 1:4 with lines linewidth 3 linecolor '#000000' title 'planar', \\\n"

@@ -15,7 +15,8 @@ void WritePng(const std::filesystem::path& path, const Canvas& canvas) {
   image.format = PNG_FORMAT_RGB;
   PendingPath pending(path);
   if (!png_image_write_to_file(&image, pending.temporary().c_str(), 0, canvas.rgb.data(), 0, nullptr)) {
-    throw Error(ErrorKind::kOutput, path.string() + ": cannot write the image: " + image.message);
+    throw Error(ErrorKind::kOutput,
+                path.string() + ": cannot write the image: " + image.message + "; is the disk full?");
   }
   pending.Commit();
 }

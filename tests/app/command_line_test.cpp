@@ -1,50 +1,16 @@
 // The program as users call it: exit codes, the one line on stderr, the files it leaves.
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <string>
+
+#include "app/evo_run.hpp"
 
 namespace evo {
 namespace {
 
 namespace fs = std::filesystem;
 
-class CommandLineTest : public ::testing::Test {
+class CommandLineTest : public EvoRunTest {
  protected:
-  void SetUp() override { fs::create_directories(folder); }
-  void TearDown() override { fs::remove_all(folder); }
-
-  /// Runs evo-run with shell words; fills out and err.
-  int Run(const std::string& words) {
-    const std::string command = std::string("'") + EVO_RUN + "' " + words + " >'" + (folder / "stdout").string() +
-                                "' 2>'" + (folder / "stderr").string() + "'";
-    const int status = std::system(command.c_str());
-    out = ReadFile(folder / "stdout");
-    err = ReadFile(folder / "stderr");
-    return WEXITSTATUS(status);
-  }
-
-  /// As Run, and the error must be one line.
-  int Refusal(const std::string& words) {
-    const int code = Run(words);
-    EXPECT_TRUE(err.starts_with("evo-run: error: ")) << err;
-    EXPECT_EQ(std::ranges::count(err, '\n'), 1) << err;
-    EXPECT_EQ(out, "");
-    return code;
-  }
-
-  static std::string ReadFile(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-
   static std::string Data(const std::string& name) {
     return std::string("'") + EVO_SOURCE_DIR + "/tests/evaluation/data/" + name + "'";
   }
@@ -53,19 +19,15 @@ class CommandLineTest : public ::testing::Test {
     return "evaluate --no-plots --estimate " + Data(estimate) + " --ground-truth " + Data(truth) + " --out '" +
            (folder / "result").string() + "' " + more;
   }
-
-  fs::path folder = fs::temp_directory_path() / ("evo_command_line_test_" + std::to_string(::getpid()));
-  std::string out;
-  std::string err;
 };
 
 TEST_F(CommandLineTest, HelpShowsAnExampleOfEveryCommand) {
   EXPECT_EQ(Run("--help"), 0);
-  for (const char* command : {"evaluate", "config"}) {
-    EXPECT_NE(out.find(command), std::string::npos);
-    ASSERT_EQ(Run(std::string(command) + " --help"), 0);
-    EXPECT_NE(out.find(std::string("Example:\n  evo-run ") + command), std::string::npos) << out;
-    EXPECT_EQ(Run("--help"), 0);
+  const std::string overview = out;
+  for (const std::string command : {"run", "track", "odometry", "evaluate", "info", "config"}) {
+    EXPECT_NE(overview.find("\n  " + command + " "), std::string::npos) << overview;
+    ASSERT_EQ(Run(command + " --help"), 0);
+    EXPECT_NE(out.find("Example:\n  evo-run " + command), std::string::npos) << out;
   }
   EXPECT_EQ(Run("--version"), 0);
   EXPECT_TRUE(out.starts_with("evo-run "));
@@ -98,6 +60,19 @@ TEST_F(CommandLineTest, PrintedConfigurationPassesTheCheck) {
   EXPECT_NE(out.find("chord_m: 2.5"), std::string::npos);
   std::ofstream(folder / "printed.yaml") << out;
   EXPECT_EQ(Run("config --check '" + (folder / "printed.yaml").string() + "'"), 0);
+}
+
+TEST_F(CommandLineTest, DefaultConfigurationFileIsThePrintedOne) {
+  ASSERT_EQ(Run("config --print"), 0);
+  EXPECT_EQ(out, ReadFile(EVO_SOURCE_DIR "/configs/default.yaml"))
+      << "write it anew: evo-run config --print > configs/default.yaml";
+  EXPECT_EQ(Run("config --check '" EVO_SOURCE_DIR "/configs/default.yaml'"), 0);
+}
+
+TEST_F(CommandLineTest, AFullDiskBehindStandardOutputIsReported) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  EXPECT_EQ(Run("config --print >/dev/full"), 8);
+  EXPECT_NE(err.find("standard output"), std::string::npos) << err;
 }
 
 TEST_F(CommandLineTest, BadInputsHaveCodesOfTheirOwn) {

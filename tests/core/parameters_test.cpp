@@ -48,6 +48,17 @@ TEST_F(ParametersTest, ReadsWhatItPrints) {
   EXPECT_EQ(weight, "huber");
 }
 
+TEST_F(ParametersTest, PrintsEveryKeyOnce) {
+  int depth = 3;
+  double share = 0.5;
+  Parameters mixed;
+  mixed.Add("a.b.depth", &depth, 1, 9, "of b");
+  mixed.Add("a.share", &share, 0.0, 1.0, "of a");
+  mixed.Add("a.b.refine", &refine, "of b");
+  EXPECT_EQ(mixed.ToYaml(),
+            "a:\n  share: 0.5  # of a; 0 to 1\n\n  b:\n    depth: 3  # of b; 1 to 9\n    refine: true  # of b\n");
+}
+
 TEST_F(ParametersTest, NamesTheLineAndTheNearestKey) {
   const std::string message = Refusal("tracker:\n  features: 100\n  sigma_xp: 2\n");
   EXPECT_NE(message.find("run.yaml:3"), std::string::npos) << message;

@@ -77,6 +77,7 @@ class MemoryReader : public EventReader {
     return !block->empty();
   }
   TimeNs first_stamp() const override { return events_.empty() ? 0 : events_.t.front(); }
+  TimeNs last_stamp() const override { return events_.empty() ? 0 : events_.t.back(); }
   double progress() const override { return static_cast<double>(next_) / static_cast<double>(events_.size()); }
 
  private:

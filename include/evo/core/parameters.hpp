@@ -48,6 +48,8 @@ class Parameters {
   /// `where` names the place in messages, for example "run.yaml:3".
   void Assign(const std::string& name, const std::string& text, const std::string& where);
   static std::string Format(const Entry& entry);
+  static std::string Describe(const Entry& entry);
+  void Print(const std::string& prefix, const std::string& indent, std::string* yaml) const;
 
   std::vector<Entry> entries_;
 };

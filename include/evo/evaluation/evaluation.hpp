@@ -63,7 +63,7 @@ struct AlignedEvaluation {
 struct Evaluation {
   TimeNs from = 0;  ///< the interval judged
   TimeNs to = 0;
-  Trajectory truth;        ///< the truth within it
+  Trajectory truth;        ///< the truth within it and the poses next to it
   Eigen::Vector3d up;      ///< unit vector along an axis of the truth's world frame
   double path_m = 0.0;     ///< length of the truth from the first pair to the last
   double coverage = 0.0;   ///< share of the interval outside gaps, in [0, 1]

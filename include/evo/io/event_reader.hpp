@@ -27,6 +27,8 @@ class EventReader {
 
   /// Stamp of the first event of the whole recording (not of the interval).
   virtual TimeNs first_stamp() const = 0;
+  /// Stamp of the last event of the whole recording, which is looked up. Throws Error (kInput) if it cannot be read.
+  virtual TimeNs last_stamp() const = 0;
   /// Share of the interval delivered so far, in [0, 1], for the progress bar.
   virtual double progress() const = 0;
 };

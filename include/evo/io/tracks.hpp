@@ -26,6 +26,10 @@ using Tracks = std::vector<TrackObservation>;
 /// Throws Error (kInput) with file and line.
 Tracks ReadTracks(const std::filesystem::path& path);
 
+/// Rounds the positions to the four decimals that WriteTracks writes, so that who goes on with `tracks` and who reads
+/// the file see the same numbers.
+void RoundAsWritten(Tracks* tracks);
+
 /// Writes rows `id t x y` in the order given: stamps with nine decimals, pixels with four, below the header line
 /// `# id timestamp x y` and one comment line for each of `comments`. Throws Error (kOutput, or kInput for a position
 /// that is not finite).

@@ -1,0 +1,135 @@
+// The whole way from events to the error report, on the bundled sample.
+#include <signal.h>
+
+#include <chrono>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+#include <vector>
+
+#include "app/evo_run.hpp"
+
+namespace evo {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> SplitAtCommas(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream stream(line);
+  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+  return cells;
+}
+
+class PipelineTest : public EvoRunTest {
+ protected:
+  /// Column by name of summary.csv's row of `alignment`.
+  std::map<std::string, std::string> Summary(const std::string& result, const std::string& alignment) const {
+    std::istringstream csv(ReadFile(folder / result / "summary.csv"));
+    std::string line;
+    std::getline(csv, line);
+    const auto names = SplitAtCommas(line);
+    std::map<std::string, std::string> row;
+    while (std::getline(csv, line)) {
+      const auto cells = SplitAtCommas(line);
+      if (cells.size() != names.size() || cells[1] != alignment) continue;
+      for (std::size_t i = 0; i < names.size(); ++i) row[names[i]] = cells[i];
+    }
+    return row;
+  }
+
+  double MeanLifetime(const std::string& result) const {
+    const std::string csv = ReadFile(folder / result / "lifetime.csv");
+    const std::string key = "\nmean,frames,,,";
+    const auto found = csv.find(key);
+    return found == std::string::npos ? 0.0 : std::stod(csv.substr(found + key.size()));
+  }
+
+  std::string To(const std::string& result) const { return " --out " + Quote(folder / result); }
+
+  /// Events and calibration alone: no ground truth at hand.
+  static std::string Blind() {
+    return "--events " + Quote(Sample("street_data.hdf5")) + " --calibration " +
+           Quote(Sample("camchain-imucam-street.yaml")) + " --no-plots ";
+  }
+
+  void ExpectSameBytes(const std::string& a, const std::string& b, const std::vector<std::string>& names) const {
+    for (const auto& name : names) {
+      const std::string content = ReadFile(folder / a / name);
+      EXPECT_FALSE(content.empty()) << name;
+      EXPECT_TRUE(content == ReadFile(folder / b / name)) << name << " differs between " << a << " and " << b;
+    }
+  }
+};
+
+TEST_F(PipelineTest, RunKeepsItsQuality) {
+  ASSERT_EQ(Run("run --events " + Quote(Sample()) + " --draw-every 1" + To("result")), 0) << err;
+  auto origin_scale = Summary("result", "origin-scale");
+  auto sim3 = Summary("result", "sim3");
+  EXPECT_GE(std::stod(origin_scale["coverage"]), 0.95);
+  EXPECT_NEAR(std::stod(origin_scale["path_m"]), 9.4, 0.1);
+  EXPECT_LT(std::stod(origin_scale["mean_planar_percent"]), 1.0);
+  EXPECT_LT(std::stod(sim3["mean_planar_percent"]), 0.5);
+  EXPECT_GT(MeanLifetime("result"), 20.0);
+  for (const char* name : {"tracks.txt", "trajectory.txt", "map.ply", "errors.csv", "errors_sim3.csv", "summary.json",
+                           "plots/trajectory.gp", "plots/errors.gp", "plots/lifetime.gp"}) {
+    EXPECT_TRUE(fs::exists(folder / "result" / name)) << name;
+  }
+  EXPECT_EQ(CountFiles(folder / "result" / "images"), 2);
+  const auto manifest = nlohmann::json::parse(ReadFile(folder / "result" / "manifest.json"));
+  EXPECT_EQ(manifest["counts"]["events"], 982468);
+  EXPECT_EQ(manifest["inputs"].size(), 3u);
+  EXPECT_TRUE(manifest["rebootstraps"].empty());
+  EXPECT_NE(out.find("sim3"), std::string::npos) << out;
+}
+
+TEST_F(PipelineTest, SameBytesForAnyNumberOfThreadsAndWithoutTheTruth) {
+  ASSERT_EQ(Run("run --no-plots --threads 1 --to 0.9 --events " + Quote(Sample()) + To("1")), 0) << err;
+  for (const std::string other : {"2", "2 again", "3"}) {
+    ASSERT_EQ(Run("run " + Blind() + "--to 0.9 --threads " + other[0] + To(other)), 0) << err;
+    ExpectSameBytes("1", other, {"tracks.txt", "lifetime.csv", "trajectory.txt", "map.ply"});
+    EXPECT_FALSE(fs::exists(folder / other / "summary.csv"));
+  }
+}
+
+TEST_F(PipelineTest, StageByStageGivesWhatRunGives) {
+  ASSERT_EQ(Run("run --no-plots --to 0.9 --events " + Quote(Sample()) + To("whole")), 0) << err;
+  ASSERT_EQ(Run("track " + Blind() + "--to 0.9" + To("stages")), 0) << err;
+  fs::remove(folder / "stages" / "manifest.json");  // each command leaves its own
+  ASSERT_EQ(Run("odometry --tracks " + Quote(folder / "stages" / "tracks.txt") + " --calibration " +
+                Quote(Sample("camchain-imucam-street.yaml")) + To("stages")),
+            0)
+      << err;
+  ExpectSameBytes("whole", "stages", {"tracks.txt", "lifetime.csv", "trajectory.txt", "map.ply"});
+}
+
+TEST_F(PipelineTest, AnInterruptedRunLeavesNothingHalfWritten) {
+  const fs::path images = folder / "result" / "images";
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    const std::string error = Path("stderr");
+    const std::string events = Sample().string();
+    const std::string result = Path("result");
+    if (!std::freopen(error.c_str(), "w", stderr)) ::_exit(1);
+    ::execl(EVO_RUN, EVO_RUN, "run", "-q", "--events", events.c_str(), "--draw-every", "0.001", "--out", result.c_str(),
+            static_cast<char*>(nullptr));
+    ::_exit(1);
+  }
+  // One image after the other is written; the second file is there once the first is whole.
+  for (int i = 0; i < 6000 && CountFiles(images) < 2; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  ::kill(child, SIGINT);
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFSIGNALED(status)) << "exit code " << WEXITSTATUS(status);
+  EXPECT_EQ(WTERMSIG(status), SIGINT);
+  EXPECT_EQ(ReadFile(folder / "stderr"), "evo-run: error: interrupted; results written so far are whole\n");
+  EXPECT_GT(CountFiles(images), 0);
+  for (const auto& entry : fs::recursive_directory_iterator(folder / "result")) {
+    EXPECT_EQ(entry.path().string().find(".part"), std::string::npos) << entry.path();
+  }
+}
+
+}  // namespace
+}  // namespace evo
