@@ -33,9 +33,9 @@ install_missing() {
     fi
     as_root=(sudo "${as_root[@]}")
   fi
-  echo "setup: installing ${missing[*]}"
+  echo "setup: installing ${missing[*]} (a few minutes)"
   "${as_root[@]}" apt-get update -qq </dev/null
-  "${as_root[@]}" apt-get install --yes -qq --no-install-recommends "${missing[@]}" </dev/null
+  "${as_root[@]}" apt-get install --yes -qq --no-install-recommends "${missing[@]}" </dev/null >/dev/null
 }
 
 if command -v apt-get >/dev/null && command -v dpkg-query >/dev/null; then

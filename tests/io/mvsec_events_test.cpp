@@ -85,6 +85,7 @@ TEST_F(MvsecEventsTest, BlocksAreWholeChunksAndBounded) {
   ASSERT_TRUE(reader->Next(&block));
   EXPECT_EQ(block.size(), 90'000u);
   EXPECT_EQ(reader->first_stamp(), events.t[0]);
+  EXPECT_EQ(reader->last_stamp(), events.t.back());
 
   const auto large = folder / "large.hdf5";
   StoreEvents(large, EventRows(events), {H5T_NATIVE_DOUBLE, {300'000, 4}, true});

@@ -31,6 +31,7 @@ TEST_F(TextEventsTest, ReadsWhatWasWrittenInSeveralBlocks) {
   const auto path = Write("events.txt", ToText(events));
   ExpectSame(ReadAll(path), events);
   EXPECT_EQ(OpenEvents(path, {}, 346, 260)->first_stamp(), events.t[0]);
+  EXPECT_EQ(OpenEvents(path, {}, 346, 260)->last_stamp(), events.t.back());
 }
 
 TEST_F(TextEventsTest, ReadsEveryWritingOfALine) {

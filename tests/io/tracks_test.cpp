@@ -38,6 +38,14 @@ TEST_F(TracksTest, ReadsWhatItWrites) {
   EXPECT_TRUE(ReadTracks(folder / "out" / "tracks.txt") == tracks);
 }
 
+TEST_F(TracksTest, RoundedTracksAreWhatTheFileGivesBack) {
+  Tracks tracks;
+  for (int i = 0; i < 20000; ++i) tracks.push_back({i, kNsPerSecond, 345.0 * i / 20000.0 + 1e-5, 0.00005 * i});
+  RoundAsWritten(&tracks);
+  WriteTracks(folder / "tracks.txt", tracks);
+  EXPECT_TRUE(ReadTracks(folder / "tracks.txt") == tracks);
+}
+
 TEST_F(TracksTest, SortsAsynchronousRowsByTimeThenId) {
   const Tracks expected = {
       {0, 500'000'000, 1, 1}, {1, 500'000'000, 3, 3}, {1, 600'000'000, 5, 5}, {0, 700'000'000, 2, 2}};
