@@ -105,6 +105,7 @@ double SettlePoint(double width, std::size_t begin, std::size_t end, BundleProbl
     normal.diagonal().array() += 1e-12;
     const Eigen::Vector3d old = point.inverse_depth;
     point.inverse_depth -= normal.ldlt().solve(gradient);
+    point.inverse_depth.z() = std::max(point.inverse_depth.z(), 0.0);
     const double stepped = PointCost(*problem, width, begin, end);
     if (stepped < cost) {
       cost = stepped;
@@ -261,6 +262,7 @@ void Apply(const Eigen::VectorXd& pose_steps, const std::vector<Eigen::Vector3d>
     Eigen::Vector3d step = point_steps[p];
     if (anchor >= 0) step -= CarriedByAnchor(point.inverse_depth, pose_steps.segment<6>(6 * anchor));
     point.inverse_depth += step;
+    point.inverse_depth.z() = std::max(point.inverse_depth.z(), 0.0);  // not beyond infinity, where depths reverse
   }
   for (Eigen::Index i = 0; i < pose_steps.size() / 6; ++i) {
     SE3& pose = problem->T_cam_world[static_cast<std::size_t>(problem->fixed_frames + i)];

@@ -43,9 +43,13 @@ void FeatureTracker::Process(const EventHistory& history, TimeNs t) {
     }
     features_.erase(features_.begin() + static_cast<std::ptrdiff_t>(kept), features_.end());
   }
-  detected_ = static_cast<double>(features_.size()) < options_.refill_below * options_.features;
+  ++frames_since_refill_;
+  detected_ = (!last_ || frames_since_refill_ >= options_.frames_between_refills) &&
+              static_cast<double>(features_.size()) < options_.refill_below * options_.features;
   last_ = t;
-  if (detected_) Refill(history, t);
+  if (!detected_) return;
+  frames_since_refill_ = 0;
+  Refill(history, t);
 }
 
 bool FeatureTracker::Track(const EventHistory& history, TimeNs t, TrackedFeature* feature) const {

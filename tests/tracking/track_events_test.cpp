@@ -33,7 +33,7 @@ TrackingResult TrackAll(const EventColumns& events, int threads, const TrackerOp
 class TrackEventsTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    events = new EventColumns(CrossScene(60, 4).Events(ThereAndBack, kDuration, 1000.0));
+    events = new EventColumns(CrossScene(75, 4).Events(ThereAndBack, kDuration, 1000.0));
     result = new TrackingResult(TrackAll(*events, 1));
   }
   static void TearDownTestSuite() {
@@ -56,7 +56,7 @@ TEST_F(TrackEventsTest, TracksFollowASceneThatTurnsBack) {
   for (const auto& [id, track] : tracks) {
     const auto& first = track.front();
     const auto& last = track.back();
-    if (ToSeconds(first.t) > 0.25 || ToSeconds(last.t) < 0.4) continue;
+    if (ToSeconds(first.t) > 0.3 || ToSeconds(last.t) < 0.35) continue;
     ++both_ways;
     const Vector2d moved(last.x - first.x, last.y - first.y);
     const Vector2d error = moved - (ThereAndBack(ToSeconds(last.t)) - ThereAndBack(ToSeconds(first.t)));

@@ -61,6 +61,7 @@ class FeatureTracker {
   std::int64_t next_id_ = 0;
   std::optional<TimeNs> last_;
   bool detected_ = false;
+  int frames_since_refill_ = 0;
 };
 
 }  // namespace evo

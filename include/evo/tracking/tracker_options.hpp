@@ -10,6 +10,7 @@ struct TrackerOptions {
   double frame_interval_s = 0.02;  ///< time between two event frames
   int features = 150;              ///< live features to aim at
   double refill_below = 0.9;       ///< detect new ones when fewer than this share is alive: a key frame
+  int frames_between_refills = 3;  ///< at least: where there is nothing new to find, do not look at every frame
   int flow_patch_radius_px = 15;   ///< half the side of the patch that tells a first flow: 31 x 31 px
   int patch_radius_px = 8;         ///< half the side of a feature's patch: 17 x 17 px; larger ones span more depths
 
