@@ -3,133 +3,23 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
+#include <map>
 #include <unordered_map>
 
-#include "evo/geometry/triangulation.hpp"
-#include "evo/odometry/block_skyline.hpp"
 #include "evo/odometry/bundle_adjuster.hpp"
 #include "evo/odometry/pose_optimizer.hpp"
+#include "odometry/run_bundle.hpp"
 
 namespace evo {
 
 namespace {
 
-constexpr std::size_t kFewestSightings = 3;  // of a track that takes part
-// Frames after which a track counts as a new one, tried in turn until the adjustment is affordable: fewer and fewer
-// frames are tied together, at first only by the longest tracks.
-constexpr std::array kSpans = {std::numeric_limits<int>::max(), 120, 80, 60, 40};
-constexpr std::size_t kTriangulationViews = 8;
-constexpr double kFarShare = 1e-3;          // inverse depth of a track without parallax, of the usual one
+constexpr int kFewestSightings = 3;         // of a point worth keeping
 constexpr double kMedianToSigma = 0.8493;   // the norm of a 2-d unit Gaussian has the median 1.1774
 constexpr double kCauchyEfficient = 2.385;  // 95 % efficiency under Gaussian noise
 constexpr double kOutlierSigmas = 5.0;
 constexpr double kSmallestSigmaPx = 0.05;
 constexpr double kSmallestInverseDepth = 1e-9;
-
-/// A bundle problem with the names of its parts.
-struct NamedProblem {
-  BundleProblem bundle;
-  std::vector<std::size_t> frames;   // of the problem, as places in the segment
-  std::vector<std::int64_t> tracks;  // of the problem's points
-};
-
-/// Places in the segment of frames that lie at least so much image motion apart.
-std::vector<std::size_t> MovingFrames(const std::vector<Frame>& frames, const Segment& segment, double min_px) {
-  std::vector<std::size_t> moving = {0};
-  for (std::size_t i = 1; i < segment.frames.size(); ++i) {
-    const auto pairs = Match(frames[segment.frames[moving.back()]], frames[segment.frames[i]]);
-    if (pairs.empty() || MedianDisparity(pairs) >= min_px) moving.push_back(i);
-  }
-  return moving;
-}
-
-std::vector<std::size_t> EveryNth(const std::vector<std::size_t>& places, std::size_t n) {
-  std::vector<std::size_t> kept;
-  for (std::size_t i = 0; i < places.size(); i += n) kept.push_back(places[i]);
-  if (kept.back() != places.back()) kept.push_back(places.back());
-  return kept;
-}
-
-struct Sighting {
-  int frame;  // of the problem
-  const Feature* feature;
-};
-
-/// Where a track starts: triangulated with some of its sightings, far away if that fails.
-BundlePoint InitialPoint(const std::vector<Sighting>& sightings, const std::vector<SE3>& poses, double far) {
-  std::vector<View> views;
-  const std::size_t used = std::min(sightings.size(), kTriangulationViews);
-  for (std::size_t k = 0; k < used; ++k) {
-    const Sighting& sighting = sightings[k * (sightings.size() - 1) / (used - 1)];
-    views.push_back({poses[sighting.frame], sighting.feature->x});
-  }
-  const SE3& anchor = poses[sightings.front().frame];
-  const Eigen::Vector2d& x = sightings.front().feature->x;
-  const auto point = TriangulateViews(views);
-  const double z = point ? (anchor * point->position_world).z() : 0.0;
-  return {sightings.front().frame, {x.x(), x.y(), z > 0.0 ? 1.0 / z : far}};
-}
-
-/// `places` are the segment's frames that take part; a track is cut into points of its own every `span` of them.
-NamedProblem BuildProblem(const std::vector<Frame>& frames, const Segment& segment,
-                          const std::vector<std::size_t>& places, int span, double far) {
-  NamedProblem problem;
-  problem.frames = places;
-  std::unordered_map<std::int64_t, std::size_t> numbers;
-  std::vector<std::pair<std::int64_t, std::vector<Sighting>>> tracks;
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    problem.bundle.T_cam_world.push_back(segment.T_cam_world[places[k]]);
-    for (const Feature& feature : frames[segment.frames[places[k]]].features) {
-      const auto [place, is_new] = numbers.try_emplace(feature.track, tracks.size());
-      const int frame = static_cast<int>(k);
-      if (is_new || frame - tracks[place->second].second.front().frame >= span) {
-        place->second = tracks.size();
-        tracks.emplace_back(feature.track, std::vector<Sighting>());
-      }
-      tracks[place->second].second.push_back({frame, &feature});
-    }
-  }
-  for (const auto& [track, sightings] : tracks) {
-    if (sightings.size() < kFewestSightings) continue;
-    const int id = static_cast<int>(problem.tracks.size());
-    problem.tracks.push_back(track);
-    problem.bundle.points.push_back(InitialPoint(sightings, problem.bundle.T_cam_world, far));
-    for (const auto& [frame, feature] : sightings) {
-      problem.bundle.observations.push_back({frame, id, feature->x, feature->px_per_unit});
-    }
-  }
-  return problem;
-}
-
-int FarthestFrame(const BundleProblem& problem) {
-  const SE3 T_world_first = problem.T_cam_world.front().Inverse();
-  const auto farthest = std::ranges::max_element(problem.T_cam_world, {}, [&](const SE3& T_cam_world) {
-    return (T_cam_world * T_world_first).translation().norm();
-  });
-  return static_cast<int>(farthest - problem.T_cam_world.begin());
-}
-
-/// The problem over as many frames as the budget allows.
-NamedProblem BuildAffordableProblem(const FinalRefinementOptions& options, const std::vector<Frame>& frames,
-                                    const Segment& segment) {
-  double mean_inverse_depth = 0.0;
-  for (const Point& point : segment.points) {
-    const double z = (segment.T_cam_world.front() * point.position).norm();
-    mean_inverse_depth += 1.0 / std::max(z, 1e-9) / static_cast<double>(segment.points.size());
-  }
-  const auto moving = MovingFrames(frames, segment, options.min_disparity_px);
-  for (std::size_t n = 1;; ++n) {
-    for (const int span : kSpans) {
-      NamedProblem problem = BuildProblem(frames, segment, EveryNth(moving, n), span, kFarShare * mean_inverse_depth);
-      problem.bundle.scale_frame = FarthestFrame(problem.bundle);
-      const double cost = BlockSkyline::Cost(BundleSkyline(problem.bundle));
-      if (cost <= options.budget || problem.frames.size() <= 2) return problem;
-    }
-  }
-}
 
 double Median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -172,38 +62,102 @@ double Adjust(const FinalRefinementOptions& options, const std::function<void(do
   return sigma_px;
 }
 
-/// The refined points that lie in front, with their histories; kept apart by track for the frames' poses.
-std::unordered_map<std::int64_t, Eigen::Vector3d> TakePoints(const NamedProblem& problem, double sigma,
-                                                             Segment* segment) {
-  std::vector<Point> points(problem.tracks.size());
-  const auto errors = BundleErrors(problem.bundle);
-  for (std::size_t i = 0; i < errors.size(); ++i) {
-    Point& point = points[problem.bundle.observations[i].point];
-    ++(errors[i].norm() < kOutlierSigmas * sigma ? point.inliers : point.outliers);
+/// The refined points of every track in order of time: a track may have been cut into several.
+class RefinedPoints {
+ public:
+  void Add(std::int64_t track, int first_frame, const Eigen::Vector3d& position) {
+    pieces_[track].push_back({first_frame, position});
   }
-  std::unordered_map<std::int64_t, Eigen::Vector3d> positions;
+
+  PoseEstimate EstimatePose(const std::vector<Frame>& frames, int index, const SE3& start) const {
+    std::vector<PoseObservation> observations;
+    for (const Feature& feature : frames[index].features) {
+      const auto found = pieces_.find(feature.track);
+      if (found == pieces_.end()) continue;
+      auto piece = std::ranges::upper_bound(found->second, index, {}, &Piece::first_frame);
+      if (piece != found->second.begin()) --piece;
+      observations.push_back({piece->position, feature.x, feature.px_per_unit});
+    }
+    return optimizer_.Optimize(observations, start);
+  }
+
+  bool Accepts(const PoseEstimate& estimate) const { return optimizer_.Accepts(estimate); }
+
+ private:
+  struct Piece {
+    int first_frame;
+    Eigen::Vector3d position;  // world
+  };
+  std::unordered_map<std::int64_t, std::vector<Piece>> pieces_;
+  PoseOptimizer optimizer_{PoseOptions()};
+};
+
+/// Takes the points that lie in front, with their histories, into the segment's map.
+RefinedPoints TakePoints(const RunBundle& run, double sigma_px, Segment* segment) {
+  std::vector<Point> points(run.tracks.size());
+  const auto errors = BundleErrors(run.bundle);
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    Point& point = points[run.bundle.observations[i].point];
+    ++(errors[i].norm() < kOutlierSigmas * sigma_px ? point.inliers : point.outliers);
+  }
+  RefinedPoints refined;
   segment->points.clear();
   for (std::size_t p = 0; p < points.size(); ++p) {
-    const BundlePoint& refined = problem.bundle.points[p];
-    if (points[p].inliers < static_cast<int>(kFewestSightings)) continue;
-    if (!(refined.inverse_depth.z() > kSmallestInverseDepth)) continue;
-    points[p].track = problem.tracks[p];
-    points[p].position = WorldPosition(problem.bundle, refined);
-    positions[points[p].track] = points[p].position;
+    const BundlePoint& from = run.bundle.points[p];
+    if (points[p].inliers < kFewestSightings || !(from.inverse_depth.z() > kSmallestInverseDepth)) continue;
+    points[p].track = run.tracks[p];
+    points[p].position = WorldPosition(run.bundle, from);
+    refined.Add(points[p].track, segment->frames[run.frames[from.anchor]], points[p].position);
     segment->points.push_back(points[p]);
   }
-  return positions;
+  return refined;
 }
 
-PoseEstimate EstimatePose(const Frame& frame, const std::unordered_map<std::int64_t, Eigen::Vector3d>& positions,
-                          const SE3& start, const PoseOptimizer& optimizer) {
-  std::vector<PoseObservation> observations;
-  for (const Feature& feature : frame.features) {
-    const auto found = positions.find(feature.track);
-    if (found != positions.end()) observations.push_back({found->second, feature.x, feature.px_per_unit});
+/// The poses of all frames against the refined points. Those of the bundle stay as they are; the others start from
+/// their neighbours, and the frames before and after the segment are taken in as far as they can be tracked.
+class PoseFiller {
+ public:
+  PoseFiller(const std::vector<Frame>& frames, const RefinedPoints& points) : frames_(frames), points_(points) {}
+
+  /// From `frame` on in steps of `direction` up to but without `end`, while the poses can be estimated.
+  void Extend(int frame, int end, int direction, SE3 start) {
+    for (; frame != end; frame += direction) {
+      if (!Estimate(frame, start)) return;
+      start = poses_.at(frame).T_cam_world;
+    }
   }
-  return optimizer.Optimize(observations, start);
-}
+
+  bool Estimate(int frame, const SE3& start) {
+    const PoseEstimate estimate = points_.EstimatePose(frames_, frame, start);
+    if (!points_.Accepts(estimate)) return false;
+    poses_[frame] = {estimate.T_cam_world, estimate.inlier_count};
+    return true;
+  }
+
+  void Keep(int frame, const SE3& T_cam_world) {
+    poses_[frame] = {T_cam_world, points_.EstimatePose(frames_, frame, T_cam_world).inlier_count};
+  }
+
+  void MoveTo(Segment* segment) const {
+    segment->frames.clear();
+    segment->T_cam_world.clear();
+    segment->inliers.clear();
+    for (const auto& [frame, pose] : poses_) {
+      segment->frames.push_back(frame);
+      segment->T_cam_world.push_back(pose.T_cam_world);
+      segment->inliers.push_back(pose.inliers);
+    }
+  }
+
+ private:
+  struct Pose {
+    SE3 T_cam_world;
+    int inliers = 0;
+  };
+  const std::vector<Frame>& frames_;
+  const RefinedPoints& points_;
+  std::map<int, Pose> poses_;
+};
 
 }  // namespace
 
@@ -219,44 +173,19 @@ void Register(Parameters& parameters, FinalRefinementOptions& options) {
 
 void RefineSegment(const FinalRefinementOptions& options, const std::vector<Frame>& frames, int before, int after,
                    const std::function<void(double)>& progress, Segment* segment) {
-  NamedProblem problem = BuildAffordableProblem(options, frames, *segment);
-  const double sigma_px = Adjust(options, progress, &problem.bundle);
-  const auto positions = TakePoints(problem, sigma_px, segment);
-
-  const PoseOptimizer optimizer({});
-  Segment refined;
-  refined.points = std::move(segment->points);
-  const auto estimate = [&](int frame, const SE3& start) -> bool {
-    const PoseEstimate pose = EstimatePose(frames[frame], positions, start, optimizer);
-    if (!optimizer.Accepts(pose)) return false;
-    refined.frames.push_back(frame);
-    refined.T_cam_world.push_back(pose.T_cam_world);
-    refined.inliers.push_back(pose.inlier_count);
-    return true;
-  };
-  SE3 start = problem.bundle.T_cam_world.front();
-  for (int frame = segment->frames.front() - 1; frame >= before && estimate(frame, start); --frame) {
-    start = refined.T_cam_world.back();
+  RunBundle run = BuildRunBundle(options, frames, *segment);
+  const double sigma_px = Adjust(options, progress, &run.bundle);
+  const RefinedPoints points = TakePoints(run, sigma_px, segment);
+  PoseFiller filler(frames, points);
+  const auto& poses = run.bundle.T_cam_world;
+  for (std::size_t k = 0; k < run.frames.size(); ++k) {
+    filler.Keep(segment->frames[run.frames[k]], poses[k]);
+    const std::size_t next = k + 1 < run.frames.size() ? run.frames[k + 1] : segment->frames.size();
+    for (std::size_t i = run.frames[k] + 1; i < next; ++i) filler.Estimate(segment->frames[i], poses[k]);
   }
-  std::ranges::reverse(refined.frames);
-  std::ranges::reverse(refined.T_cam_world);
-  std::ranges::reverse(refined.inliers);
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < segment->frames.size(); ++i) {
-    const bool adjusted = next < problem.frames.size() && problem.frames[next] == i;
-    if (adjusted) start = problem.bundle.T_cam_world[next++];
-    if (!adjusted) {
-      if (estimate(segment->frames[i], start)) start = refined.T_cam_world.back();
-      continue;
-    }
-    refined.frames.push_back(segment->frames[i]);
-    refined.T_cam_world.push_back(start);
-    refined.inliers.push_back(EstimatePose(frames[segment->frames[i]], positions, start, optimizer).inlier_count);
-  }
-  for (int frame = segment->frames.back() + 1; frame < after && estimate(frame, start); ++frame) {
-    start = refined.T_cam_world.back();
-  }
-  *segment = std::move(refined);
+  filler.Extend(segment->frames.front() - 1, before - 1, -1, poses.front());
+  filler.Extend(segment->frames.back() + 1, after, 1, poses.back());
+  filler.MoveTo(segment);
   progress(1.0);
 }
 
