@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 #include "evo/geometry/triangulation.hpp"
@@ -18,6 +19,12 @@ constexpr double kTryAgainPx = 1.5;  // image motion between two tries
 constexpr int kRefinedFrames = 12;   // of those between the pair
 constexpr double kGoodPx = 2.0;      // residual after refinement
 constexpr double kGoodShare = 0.75;  // of all residuals
+
+std::string Decimal(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f", value);
+  return text;
+}
 
 double Median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -82,8 +89,8 @@ std::optional<Bootstrap> Bootstrapper::Add(int index) {
     const double disparity = MedianDisparity(pairs);
     if (disparity < next_try_px_) {
       if (disparity < options_.min_disparity_px) {
-        Refuse("too little motion: the image moved " + std::to_string(disparity) + " px, " +
-               std::to_string(options_.min_disparity_px) + " px are needed");
+        Refuse("too little motion: the image moved " + Decimal(disparity) + " px, " +
+               Decimal(options_.min_disparity_px) + " px are needed");
       }
       break;
     }
@@ -113,7 +120,7 @@ std::optional<Bootstrap> Bootstrapper::Try(int first, int last) {
   }
   const double parallax_deg = Median(parallaxes) * 180.0 / std::numbers::pi;
   if (parallax_deg < options_.min_parallax_deg) {
-    Refuse("too little parallax (" + std::to_string(parallax_deg) + " degrees): the camera only turned");
+    Refuse("too little parallax (" + Decimal(parallax_deg) + " degrees): the camera only turned");
     return std::nullopt;
   }
   return FromMotion(first, last, pairs, motion->T_2_1, motion->inliers);
