@@ -68,7 +68,7 @@ inline Drive MakeDrive(const DriveOptions& options) {
       pitch += 0.03 * std::sin(2.0 * M_PI * phase);
       lift -= 0.06 * std::sin(M_PI * phase);
     }
-    heading += 0.06 * std::sin(2.0 * M_PI * t / 12.0) * kInterval * speed / options.speed;
+    heading += 0.009 * std::sin(2.0 * M_PI * t / 12.0) * kInterval * speed;
     position += kInterval * speed * Eigen::Vector3d(std::sin(heading), 0.0, std::cos(heading));
     const Eigen::Quaterniond rotation = so3::Exp({0, heading, 0}) * so3::Exp({pitch, 0, 0});
     const SE3 T_world_cam(rotation, position + Eigen::Vector3d(0, lift, 0));

@@ -1,0 +1,212 @@
+#include "evo/odometry/odometry.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <sstream>
+#include <string>
+
+#include "evo/core/error.hpp"
+#include "odometry/synthetic_drive.hpp"
+
+namespace evo {
+namespace {
+
+using testing::Drive;
+using testing::DriveCamera;
+using testing::DriveOptions;
+using testing::MakeDrive;
+
+constexpr auto kNoProgress = [](double) {};
+
+struct Accuracy {
+  double planar_percent = 0.0;    ///< mean planar error over the path: first pose aligned, one scale
+  double rotation_degrees = 0.0;  ///< largest error of the rotation since the first pose
+  double coverage = 0.0;          ///< share of the frames with a pose
+};
+
+Accuracy Evaluate(const Trajectory& estimate, const Trajectory& truth) {
+  std::map<TimeNs, SE3> by_time;
+  for (const auto& pose : truth) by_time[pose.t] = pose.T_world_cam;
+  std::vector<SE3> a, b;  // relative to the first common pose
+  for (const auto& pose : estimate) {
+    a.push_back(estimate.front().T_world_cam.Inverse() * pose.T_world_cam);
+    b.push_back(by_time.at(estimate.front().t).Inverse() * by_time.at(pose.t));
+  }
+  double ab = 0.0, aa = 0.0, path = 0.0;
+  Accuracy accuracy;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ab += a[i].translation().dot(b[i].translation());
+    aa += a[i].translation().squaredNorm();
+    if (i > 0) path += (b[i].translation() - b[i - 1].translation()).norm();
+    const double angle = so3::Log(a[i].rotation().conjugate() * b[i].rotation()).norm();
+    accuracy.rotation_degrees = std::max(accuracy.rotation_degrees, angle * 180.0 / M_PI);
+  }
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const Eigen::Vector3d error = ab / aa * a[i].translation() - b[i].translation();
+    accuracy.planar_percent += 100.0 * std::hypot(error.x(), error.z()) / path / static_cast<double>(a.size());
+  }
+  accuracy.coverage = static_cast<double>(estimate.size()) / static_cast<double>(truth.size());
+  return accuracy;
+}
+
+OdometryResult Estimate(const Drive& drive, const OdometryOptions& options = {}, int threads = 2) {
+  return RunOdometry(drive.tracks, DriveCamera(), options, threads, kNoProgress);
+}
+
+TEST(Odometry, DrivesThroughBumpsStopAndTrafficWithinAPercent) {
+  double sum = 0.0;
+  for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+    const Drive drive = MakeDrive({.seed = seed});
+    const auto result = Estimate(drive);
+    const Accuracy accuracy = Evaluate(result.trajectory, drive.truth);
+    EXPECT_LT(accuracy.planar_percent, 0.6) << seed;
+    EXPECT_LT(accuracy.rotation_degrees, 1.2) << seed;
+    EXPECT_EQ(accuracy.coverage, 1.0) << seed;
+    EXPECT_EQ(result.bootstraps.size(), 1u) << seed;
+    EXPECT_TRUE(result.lost.empty()) << seed;
+    EXPECT_FALSE(result.resampled);
+    EXPECT_GT(result.points.size(), 1000u) << seed;
+    sum += accuracy.planar_percent;
+  }
+  EXPECT_LT(sum / 3, 0.35);
+}
+
+TEST(Odometry, RefinementPaysOff) {
+  OdometryOptions online;
+  online.final_refinement.enabled = false;
+  double before = 0.0, after = 0.0;
+  for (std::uint32_t seed = 21; seed <= 24; ++seed) {
+    const Drive drive = MakeDrive({.seconds = 8.0, .stop = false, .seed = seed});
+    before += Evaluate(Estimate(drive, online).trajectory, drive.truth).planar_percent / 4;
+    after += Evaluate(Estimate(drive).trajectory, drive.truth).planar_percent / 4;
+  }
+  EXPECT_LT(before, 1.0);
+  EXPECT_LT(after, 0.3);
+  EXPECT_LT(after, 0.8 * before);
+}
+
+TEST(Odometry, SameBytesForAnyNumberOfThreads) {
+  const Drive drive = MakeDrive({.seconds = 5.0, .seed = 5});
+  const auto one = Estimate(drive, {}, 1);
+  const auto four = Estimate(drive, {}, 4);
+  ASSERT_EQ(one.trajectory.size(), four.trajectory.size());
+  for (std::size_t i = 0; i < one.trajectory.size(); ++i) {
+    EXPECT_EQ(one.trajectory[i].t, four.trajectory[i].t);
+    EXPECT_EQ(one.trajectory[i].T_world_cam.Matrix(), four.trajectory[i].T_world_cam.Matrix()) << i;
+  }
+  ASSERT_EQ(one.points.size(), four.points.size());
+  for (std::size_t i = 0; i < one.points.size(); ++i) EXPECT_EQ(one.points[i].position, four.points[i].position);
+}
+
+TEST(Odometry, GapWithoutTracksStartsANewSegmentAtTheOldSpeed) {
+  const Drive drive = MakeDrive({.stop = false, .blackout = FromSeconds(0.5), .seed = 6});
+  const auto result = Estimate(drive);
+  EXPECT_EQ(result.bootstraps.size(), 2u);
+  const Accuracy accuracy = Evaluate(result.trajectory, drive.truth);
+  EXPECT_LT(accuracy.planar_percent, 3.0);  // the scale is carried over by the speed alone
+  EXPECT_GT(accuracy.coverage, 0.93);
+  for (std::size_t i = 1; i < result.trajectory.size(); ++i) {
+    EXPECT_GT(result.trajectory[i].t, result.trajectory[i - 1].t);
+  }
+}
+
+TEST(Odometry, StandstillIsNotMotion) {
+  const Drive drive = MakeDrive({.seconds = 3.0, .speed = 0.0, .bumps = false});
+  try {
+    Estimate(drive);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::kTrackingLost);
+    EXPECT_NE(std::string(error.what()).find("too little motion"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Odometry, SaysThatThereAreTooFewTracks) {
+  const Drive drive = MakeDrive({.seconds = 3.0, .features = 10, .stop = false});
+  try {
+    Estimate(drive);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::kTrackingLost);
+    EXPECT_NE(std::string(error.what()).find("tracks"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Odometry, ACalibrationOfAnotherSensorIsRefused) {
+  Calibration small = DriveCamera().calibration();
+  small.width = 240;
+  small.height = 180;
+  try {
+    RunOdometry(MakeDrive({.seconds = 1.0}).tracks, Camera(small), {}, 1, kNoProgress);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::kInput);
+    EXPECT_NE(std::string(error.what()).find("240 x 180"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Odometry, OptionsHaveUniqueNamesAndDefaultsInRange) {
+  OdometryOptions options;
+  Parameters parameters;
+  Register(parameters, options);
+  std::map<std::string, int> names;
+  for (const auto& [name, value] : parameters.Values()) {
+    EXPECT_EQ(++names[name], 1) << name;
+    EXPECT_EQ(name.rfind("odometry.", 0), 0u) << name;
+    EXPECT_NO_THROW(parameters.Set(name + "=" + value)) << name;
+  }
+}
+
+/// Real tracks, asynchronous, with motion capture.
+TEST(Odometry, FollowsRealAsynchronousTracks) {
+  const std::string folder = std::string(EVO_SOURCE_DIR) + "/../shared/data/uzh_boxes_6dof_tracks/";
+  std::ifstream calibration_file(folder + "calib.txt"), tracks_file(folder + "tracks.txt");
+  std::ifstream truth_file(folder + "groundtruth.txt");
+  if (!calibration_file || !tracks_file || !truth_file) GTEST_SKIP() << folder << " is not here";
+  Calibration calibration;
+  calibration.width = 240;
+  calibration.height = 180;
+  calibration_file >> calibration.fx >> calibration.fy >> calibration.cx >> calibration.cy;
+  for (double& k : calibration.coefficients) calibration_file >> k;
+  Tracks tracks;
+  std::string stamp;
+  for (TrackObservation o; tracks_file >> o.id >> stamp >> o.x >> o.y;) {
+    o.t = ParseTime(stamp).value();
+    tracks.push_back(o);
+  }
+  std::ranges::sort(tracks, {}, [](const TrackObservation& o) { return std::pair(o.t, o.id); });
+  const auto result = RunOdometry(tracks, Camera(calibration), {}, 2, kNoProgress);
+  EXPECT_TRUE(result.resampled);
+  ASSERT_GT(result.trajectory.size(), 140u);
+
+  std::map<TimeNs, Eigen::Vector3d> truth;
+  for (std::string line; std::getline(truth_file, line);) {
+    std::istringstream row(line);
+    Eigen::Vector3d p;
+    if (line[0] != '#' && row >> stamp >> p.x() >> p.y() >> p.z()) truth[ParseTime(stamp).value()] = p;
+  }
+  Eigen::Matrix3Xd a(3, 0), b(3, 0);
+  for (const auto& pose : result.trajectory) {
+    const auto after = truth.upper_bound(pose.t);
+    if (after == truth.begin() || after == truth.end()) continue;
+    const auto before = std::prev(after);
+    const double s = ToSeconds(pose.t - before->first) / ToSeconds(after->first - before->first);
+    a.conservativeResize(3, a.cols() + 1);
+    b.conservativeResize(3, b.cols() + 1);
+    a.rightCols<1>() = pose.T_world_cam.translation();
+    b.rightCols<1>() = (1.0 - s) * before->second + s * after->second;
+  }
+  const Eigen::Matrix4d similarity = Eigen::umeyama(a, b);
+  const Eigen::Matrix3Xd errors =
+      ((similarity.topLeftCorner<3, 3>() * a).colwise() + similarity.topRightCorner<3, 1>()) - b;
+  EXPECT_LT(std::sqrt(errors.colwise().squaredNorm().mean()), 0.025);  // m, over a path of 1.4 m
+}
+
+}  // namespace
+}  // namespace evo

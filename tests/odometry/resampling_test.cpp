@@ -1,0 +1,103 @@
+#include "evo/odometry/resampling.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "evo/core/error.hpp"
+#include "odometry/synthetic_drive.hpp"
+
+namespace evo {
+namespace {
+
+/// A track that moves with `speed` px/s along x, seen at random instants about `interval_s` apart, quantised to whole
+/// pixels if asked for.
+void AddTrack(std::int64_t id, double speed, double interval_s, double from_s, double to_s, bool quantised,
+              std::mt19937* random, Tracks* tracks) {
+  std::uniform_real_distribution<double> jitter(0.5, 1.5);
+  for (double t = from_s; t < to_s; t += interval_s * jitter(*random)) {
+    const double x = 20.0 + speed * t;
+    tracks->push_back({id, FromSeconds(t), quantised ? std::round(x) : x, 50.0});
+  }
+}
+
+void Sort(Tracks* tracks) {
+  std::ranges::sort(*tracks, {}, [](const TrackObservation& o) { return std::pair(o.t, o.id); });
+}
+
+TEST(Resampling, TellsFramesFromAsynchronousTracks) {
+  EXPECT_TRUE(AreSynchronous(testing::MakeDrive({.seconds = 0.5}).tracks));
+  std::mt19937 random(1);
+  Tracks tracks;
+  for (int id = 0; id < 50; ++id) AddTrack(id, 100, 0.002, 0, 0.5, false, &random, &tracks);
+  Sort(&tracks);
+  EXPECT_FALSE(AreSynchronous(tracks));
+}
+
+TEST(Resampling, IsExactOnStraightMotionAndNeverExtrapolates) {
+  std::mt19937 random(2);
+  Tracks tracks;
+  for (int id = 0; id < 20; ++id) AddTrack(id, 80, 0.003, 0.01 * id, 1.0, false, &random, &tracks);
+  Sort(&tracks);
+  const Tracks resampled = Resample(tracks, {});
+  ASSERT_GT(resampled.size(), 500u);
+  for (const auto& o : resampled) {
+    EXPECT_NEAR(o.x, 20.0 + 80.0 * ToSeconds(o.t), 1e-6);
+    EXPECT_GE(ToSeconds(o.t), 0.01 * static_cast<double>(o.id) - 1e-9);
+    EXPECT_LT(ToSeconds(o.t), 1.0);
+  }
+  EXPECT_TRUE(std::ranges::is_sorted(resampled, {}, [](const auto& o) { return std::pair(o.t, o.id); }));
+  EXPECT_TRUE(AreSynchronous(resampled));
+}
+
+TEST(Resampling, FittedLineBeatsInterpolationOfQuantisedPositions) {
+  std::mt19937 random(3);
+  Tracks tracks;
+  for (int id = 0; id < 20; ++id) AddTrack(id, 300 + id, 0.002, 0, 1.0, true, &random, &tracks);
+  Sort(&tracks);
+  const auto rms = [&](double window) {
+    double sum = 0.0;
+    const Tracks resampled = Resample(tracks, {.fit_window_s = window});
+    for (const auto& o : resampled) {
+      sum += std::pow(o.x - (20.0 + (300.0 + static_cast<double>(o.id)) * ToSeconds(o.t)), 2);
+    }
+    return std::sqrt(sum / static_cast<double>(resampled.size()));
+  };
+  EXPECT_LT(rms(0.01), 0.7 * rms(0.0));
+}
+
+TEST(Resampling, LeavesLongGapsOpen) {
+  std::mt19937 random(4);
+  Tracks tracks;
+  AddTrack(1, 50, 0.003, 0.0, 0.4, false, &random, &tracks);
+  AddTrack(1, 50, 0.003, 0.8, 1.2, false, &random, &tracks);
+  for (const auto& o : Resample(tracks, {.max_gap_s = 0.2})) {
+    EXPECT_TRUE(ToSeconds(o.t) < 0.41 || ToSeconds(o.t) > 0.79) << ToSeconds(o.t);
+  }
+}
+
+TEST(Resampling, FramesHoldUndistortedFeaturesWithTheLensJacobian) {
+  const Camera camera = testing::DriveCamera();
+  const Tracks tracks = {{3, 10, 300.0, 40.0}, {7, 10, 50.0, 200.0}, {7, 10, 50.0, 200.0}, {3, 20, 301.0, 41.0}};
+  const auto frames = BuildFrames(tracks, camera);
+  ASSERT_EQ(frames.size(), 2u);
+  ASSERT_EQ(frames[0].features.size(), 2u);  // the repeated sighting counts once
+  EXPECT_EQ(frames[1].t, 20);
+  const Feature* const feature = frames[0].Find(3);
+  ASSERT_TRUE(feature);
+  EXPECT_FALSE(frames[1].Find(7));
+  EXPECT_LT((camera.Distort(feature->x) - Eigen::Vector2d(300.0, 40.0)).norm(), 1e-6);
+  const Eigen::Vector2d d(1e-3, -2e-3);
+  const Eigen::Vector2d moved = camera.Distort(feature->x + d) - camera.Distort(feature->x);
+  EXPECT_LT((feature->px_per_unit * d - moved).norm(), 5e-3);
+}
+
+TEST(Resampling, RefusesTracksOffTheSensor) {
+  const Tracks tracks = {{1, 0, 10, 10}, {2, 0, 400, 10}};
+  EXPECT_THROW(BuildFrames(tracks, testing::DriveCamera()), Error);
+}
+
+}  // namespace
+}  // namespace evo
