@@ -113,8 +113,8 @@ RefinedPoints TakePoints(const RunBundle& run, double sigma_px, Segment* segment
   return refined;
 }
 
-/// The poses of all frames against the refined points. Those of the bundle stay as they are; the others start from
-/// their neighbours, and the frames before and after the segment are taken in as far as they can be tracked.
+/// The poses of all frames against the refined points. Those of the bundle stay as they are; the others, lost or not,
+/// start from their neighbours, and the frames before and after the segment are taken in as far as they can be tracked.
 class PoseFiller {
  public:
   PoseFiller(const std::vector<Frame>& frames, const RefinedPoints& points) : frames_(frames), points_(points) {}
@@ -179,9 +179,11 @@ void RefineSegment(const FinalRefinementOptions& options, const std::vector<Fram
   PoseFiller filler(frames, points);
   const auto& poses = run.bundle.T_cam_world;
   for (std::size_t k = 0; k < run.frames.size(); ++k) {
-    filler.Keep(segment->frames[run.frames[k]], poses[k]);
-    const std::size_t next = k + 1 < run.frames.size() ? run.frames[k + 1] : segment->frames.size();
-    for (std::size_t i = run.frames[k] + 1; i < next; ++i) filler.Estimate(segment->frames[i], poses[k]);
+    const int frame = segment->frames[run.frames[k]];
+    filler.Keep(frame, poses[k]);
+    const bool last = k + 1 == run.frames.size();
+    const int next = last ? segment->frames.back() + 1 : segment->frames[run.frames[k + 1]];
+    for (int between = frame + 1; between < next; ++between) filler.Estimate(between, poses[k]);
   }
   filler.Extend(segment->frames.front() - 1, before - 1, -1, poses.front());
   filler.Extend(segment->frames.back() + 1, after, 1, poses.back());

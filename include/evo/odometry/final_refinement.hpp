@@ -27,8 +27,8 @@ struct Segment {
 };
 
 /// Bundle adjustment over the frames of one segment and all their tracks, then every frame's pose against the refined
-/// points, also of frames up to `before` and `after` that the tracking had not reached. The first pose and the length
-/// of the path stay. `frames` are all frames of the run; the segment may reach over the indices [before, after).
+/// points, also of frames in [before, after) that the tracking had not reached. The first pose and the distance of the
+/// farthest stay. `frames` are all frames of the run. A track may come back as several points: long ones are cut.
 void RefineSegment(const FinalRefinementOptions& options, const std::vector<Frame>& frames, int before, int after,
                    const std::function<void(double)>& progress, Segment* segment);
 
