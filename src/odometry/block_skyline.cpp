@@ -37,14 +37,16 @@ bool BlockSkyline::Factorize() {
 BlockSkyline::Vector BlockSkyline::Solve(const Vector& b) const {
   Vector x = b;
   for (int i = 0; i < rows(); ++i) {
-    for (int k = first_[i]; k < i; ++k) x.segment<6>(6 * i) -= At(i, k) * x.segment<6>(6 * k);
-    auto part = x.segment<6>(6 * i);
+    for (int k = first_[i]; k < i; ++k)
+      x.segment<6>(Eigen::Index{6} * i) -= At(i, k) * x.segment<6>(Eigen::Index{6} * k);
+    auto part = x.segment<6>(Eigen::Index{6} * i);
     At(i, i).triangularView<Eigen::Lower>().solveInPlace(part);
   }
   for (int i = rows() - 1; i >= 0; --i) {
-    auto part = x.segment<6>(6 * i);
+    auto part = x.segment<6>(Eigen::Index{6} * i);
     At(i, i).triangularView<Eigen::Lower>().transpose().solveInPlace(part);
-    for (int k = first_[i]; k < i; ++k) x.segment<6>(6 * k) -= At(i, k).transpose() * x.segment<6>(6 * i);
+    for (int k = first_[i]; k < i; ++k)
+      x.segment<6>(Eigen::Index{6} * k) -= At(i, k).transpose() * x.segment<6>(Eigen::Index{6} * i);
   }
   return x;
 }

@@ -106,6 +106,7 @@ std::optional<Bootstrap> Bootstrapper::Add(int index) {
 std::optional<Bootstrap> Bootstrapper::Try(int first, int last) {
   const auto pairs = Match(frames_[first], frames_[last]);
   std::vector<Correspondence> correspondences;
+  correspondences.reserve(pairs.size());
   for (const auto& [a, b] : pairs) correspondences.push_back({a->x, b->x});
   const auto motion = EstimateRelativePose(correspondences, {.threshold = options_.inlier_px / focal_px_});
   const int inliers = motion ? motion->inlier_count : 0;

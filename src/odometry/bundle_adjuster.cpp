@@ -126,13 +126,13 @@ void Apply(const Eigen::VectorXd& pose_steps, const std::vector<Eigen::Vector3d>
     BundlePoint& point = problem->points[p];
     const int anchor = point.anchor - problem->fixed_frames;
     Eigen::Vector3d step = point_steps[p];
-    if (anchor >= 0) step -= CarriedByAnchor(point.inverse_depth, pose_steps.segment<6>(6 * anchor));
+    if (anchor >= 0) step -= CarriedByAnchor(point.inverse_depth, pose_steps.segment<6>(Eigen::Index{6} * anchor));
     point.inverse_depth += step;
     point.inverse_depth.z() = std::max(point.inverse_depth.z(), 0.0);  // not beyond infinity, where depths reverse
   }
   for (Eigen::Index i = 0; i < pose_steps.size() / 6; ++i) {
     SE3& pose = problem->T_cam_world[static_cast<std::size_t>(problem->fixed_frames + i)];
-    pose = SE3::Exp(pose_steps.segment<6>(6 * i)) * pose;
+    pose = SE3::Exp(pose_steps.segment<6>(Eigen::Index{6} * i)) * pose;
   }
 }
 

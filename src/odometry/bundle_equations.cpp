@@ -32,7 +32,7 @@ BundleEquations::BundleEquations(const BundleProblem& problem, double loss_px, c
 
 void BundleEquations::Linearize() {
   std::ranges::fill(pose_blocks_, BlockSkyline::Block::Zero());
-  pose_gradient_ = Eigen::VectorXd::Zero(6 * reduced_.rows());
+  pose_gradient_ = Eigen::VectorXd::Zero(Eigen::Index{6} * reduced_.rows());
   for (std::size_t p = 0; p < problem_.points.size(); ++p) LinearizePoint(p);
   if (problem_.scale_frame >= problem_.fixed_frames) LinearizeScale();
 }
@@ -45,7 +45,7 @@ void BundleEquations::LinearizeScale() {
   by_pose.head<3>() = kScalePrior / scale_length_ * t.transpose() / norm;
   const int pose = problem_.scale_frame - problem_.fixed_frames;
   pose_blocks_[pose] += by_pose.transpose() * by_pose;
-  pose_gradient_.segment<6>(6 * pose) += by_pose.transpose() * kScalePrior * (norm / scale_length_ - 1.0);
+  pose_gradient_.segment<6>(Eigen::Index{6} * pose) += by_pose.transpose() * kScalePrior * (norm / scale_length_ - 1.0);
 }
 
 void BundleEquations::LinearizePoint(std::size_t p) {
@@ -67,7 +67,7 @@ void BundleEquations::LinearizePoint(std::size_t p) {
     if (pose < 0) continue;
     const Eigen::Matrix<double, 6, 2> turned = weight * jacobian.by_pose.transpose();
     pose_blocks_[pose].noalias() += turned.lazyProduct(jacobian.by_pose);
-    pose_gradient_.segment<6>(6 * pose).noalias() += turned * jacobian.error;
+    pose_gradient_.segment<6>(Eigen::Index{6} * pose).noalias() += turned * jacobian.error;
     cross_[i].noalias() = turned.lazyProduct(jacobian.by_point);
   }
 }
@@ -88,7 +88,7 @@ bool BundleEquations::Solve(double lambda, Eigen::VectorXd* pose_steps, std::vec
     Eigen::Vector3d sum = -point_gradients_[p];
     for (std::size_t i = begin_[p]; i < begin_[p + 1]; ++i) {
       const int pose = Pose(i);
-      if (pose >= 0) sum.noalias() -= cross_[i].transpose() * pose_steps->segment<6>(6 * pose);
+      if (pose >= 0) sum.noalias() -= cross_[i].transpose() * pose_steps->segment<6>(Eigen::Index{6} * pose);
     }
     (*point_steps)[p] = inverses_[p] * sum;
   }
@@ -104,7 +104,7 @@ void BundleEquations::EliminatePoint(std::size_t p, double lambda, Eigen::Vector
     const int row = Pose(i);
     if (row < 0) continue;
     const Eigen::Matrix<double, 6, 3> scaled = cross_[i] * inverses_[p];
-    right->segment<6>(6 * row).noalias() += scaled * point_gradients_[p];
+    right->segment<6>(Eigen::Index{6} * row).noalias() += scaled * point_gradients_[p];
     for (std::size_t j = begin_[p]; j <= i; ++j) {
       const int column = Pose(j);
       if (column >= 0) reduced_.At(row, column).noalias() -= scaled.lazyProduct(cross_[j].transpose());

@@ -105,7 +105,7 @@ FrameHandler::Sighted FrameHandler::Sight(const Frame& frame) const {
 
 /// The last pose carried on with the last velocity.
 SE3 FrameHandler::Predict(TimeNs t) const {
-  const SE3 last = Pose(last_);
+  SE3 last = Pose(last_);
   const double ahead = ToSeconds(t - frames_[last_].t);
   if (before_last_ < 0 || ahead > kPredictionSeconds) return last;
   const double interval = ToSeconds(frames_[last_].t - frames_[before_last_].t);
