@@ -134,12 +134,4 @@ void EventHistory::Gather(const MovingPatch& patch, LocalEvents* local) const {
   }
 }
 
-std::size_t EventHistory::CountBetween(TimeNs begin, TimeNs end) const {
-  std::size_t count = 0;
-  for (const Slice& slice : slices_) {
-    if (slice.begin < end && slice.begin + slice_duration_ > begin) count += slice.entries.size();
-  }
-  return count;
-}
-
 }  // namespace evo

@@ -100,18 +100,21 @@ TEST(EventHistory, DoesNotDependOnHowTheStreamIsCutIntoBlocks) {
 }
 
 TEST(EventHistory, ForgetsWhatIsDropped) {
+  const EventColumns events = RandomEvents(2000, 0, 20'000'000);
   EventHistory history(kWidth, kHeight, kSlice);
-  history.Append(RandomEvents(2000, 0, 20'000'000));
+  history.Append(events);
   history.Finish();
-  EXPECT_EQ(history.CountBetween(0, 20'000'000), 2000u);
+  const auto count = [&](TimeNs begin, TimeNs end) {
+    std::ptrdiff_t visited = 0;
+    history.ForEachBetween(begin, end, [&](int, int, TimeNs, std::int8_t) { ++visited; });
+    return visited;
+  };
+  EXPECT_EQ(count(0, 20'000'000), 2000);
   history.DropBefore(10'000'000);
-  EXPECT_EQ(history.CountBetween(0, 10'000'000), 0u);
-  std::size_t visited = 0;
-  history.ForEachBetween(0, 20'000'000, [&](int, int, TimeNs t, std::int8_t) {
-    EXPECT_GE(t, 10'000'000);
-    ++visited;
-  });
-  EXPECT_EQ(visited, history.CountBetween(0, 20'000'000));
+  EXPECT_EQ(count(0, 10'000'000), 0);
+  const auto kept = std::ranges::count_if(events.t, [](TimeNs t) { return t >= 10'000'000; });
+  EXPECT_GT(kept, 0);
+  EXPECT_EQ(count(0, 20'000'000), kept);
 }
 
 TEST(LocalEvents, ThinsEvenly) {

@@ -47,8 +47,6 @@ class EventHistory {
 
   /// Replaces `local` by the events of `patch`, slice by slice and tile by tile (the order is fixed, not by time).
   void Gather(const MovingPatch& patch, LocalEvents* local) const;
-  /// Number of events on the whole sensor in the slices that overlap [begin, end).
-  std::size_t CountBetween(TimeNs begin, TimeNs end) const;
 
   /// Calls visit(x, y, t, polarity) for every event of [begin, end).
   template <typename Visitor>

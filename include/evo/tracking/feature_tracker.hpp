@@ -36,7 +36,6 @@ class FeatureTracker {
   void Process(const EventHistory& history, TimeNs t);
 
   const std::vector<TrackedFeature>& features() const { return features_; }
-  const FlowField& flow_field() const { return flow_field_; }
   /// Whether the last frame was a key frame, where new features were detected.
   bool detected() const { return detected_; }
 
