@@ -150,7 +150,9 @@ std::vector<IndexPair> ByDirectAngle(std::span<const StampedPose> poses, double 
 
 }  // namespace
 
-const char* UnitName(DeltaUnit unit) { return std::ranges::find(kUnits, unit, [](const auto& u) { return u.second; })->first; }
+const char* UnitName(DeltaUnit unit) {
+  return std::ranges::find(kUnits, unit, [](const auto& u) { return u.second; })->first;
+}
 
 std::vector<Delta> ParseDeltas(const std::string& text) {
   std::vector<Delta> deltas;

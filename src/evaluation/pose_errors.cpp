@@ -50,7 +50,7 @@ std::vector<PoseError> ComputeErrors(const Trajectory& truth, std::span<const Po
   return errors;
 }
 
-ErrorSummary Summarize(std::span<const PoseError> errors, double DrivingError::* component) {
+ErrorSummary Summarize(std::span<const PoseError> errors, double DrivingError::*component) {
   std::vector<double> lengths;
   std::vector<double> shares;
   for (const auto& error : errors) {

@@ -16,6 +16,6 @@ std::vector<PoseError> ComputeErrors(const Trajectory& truth, std::span<const Po
                                      const EvaluationOptions& options);
 
 /// `errors` holds one or more.
-ErrorSummary Summarize(std::span<const PoseError> errors, double DrivingError::* component);
+ErrorSummary Summarize(std::span<const PoseError> errors, double DrivingError::*component);
 
 }  // namespace evo

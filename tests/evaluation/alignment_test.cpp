@@ -38,7 +38,10 @@ Trajectory Moved(Trajectory trajectory, const Similarity& similarity) {
 }
 
 double Rmse(const Trajectory& truth, const Trajectory& estimate, const char* alignment) {
-  return Evaluate(truth, estimate, std::vector{ParseAlignment(alignment)}, {}, {}).alignments.front().Ape(PoseRelation::kTranslation).rmse;
+  return Evaluate(truth, estimate, std::vector{ParseAlignment(alignment)}, {}, {})
+      .alignments.front()
+      .Ape(PoseRelation::kTranslation)
+      .rmse;
 }
 
 const Similarity kRigid{1.0, SE3(so3::Exp({0.4, -1.2, 2.0}), {100.0, -20.0, 3.0})};
@@ -94,7 +97,9 @@ TEST(Alignment, ReflectionIsNeverUsed) {
     pose.T_world_cam = SE3(pose.T_world_cam.rotation(), {p.x(), -p.y(), p.z()});
   }
   const auto pairs = Associate(truth, mirrored, {});
-  EXPECT_NEAR(Align(pairs, ParseAlignment("se3"), Eigen::Vector3d::UnitZ()).T_truth_estimate.RotationMatrix().determinant(), 1.0, 1e-12);
+  EXPECT_NEAR(
+      Align(pairs, ParseAlignment("se3"), Eigen::Vector3d::UnitZ()).T_truth_estimate.RotationMatrix().determinant(),
+      1.0, 1e-12);
   EXPECT_GT(Rmse(truth, mirrored, "se3"), 0.1);
 }
 

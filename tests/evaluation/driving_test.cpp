@@ -45,7 +45,8 @@ TEST(DrivingFrame, NamesErrorsAsTheDriverWould) {
   DrivingFrame frame(truth, UpDirection("auto", truth), "travel", 1.0);
   const SE3& T_world_cam = truth[10].T_world_cam;
   // Ahead is z, left is -x, up is -y.
-  const auto error = frame.Split(truth[10].t, T_world_cam, T_world_cam.translation() + Eigen::Vector3d(-0.3, -0.2, 0.4));
+  const auto error =
+      frame.Split(truth[10].t, T_world_cam, T_world_cam.translation() + Eigen::Vector3d(-0.3, -0.2, 0.4));
   EXPECT_NEAR(error.longitudinal, 0.4, 1e-12);
   EXPECT_NEAR(error.lateral, 0.3, 1e-12);
   EXPECT_NEAR(error.vertical, 0.2, 1e-12);

@@ -58,23 +58,40 @@ Question ReadCommand(const std::string& command) {
     return word;
   };
   for (std::string flag; words >> flag;) {
-    if (flag == "-a") question.alignment = "se3";
-    else if (flag == "-as") question.alignment = "sim3";
-    else if (flag == "-s") question.alignment = "scale";
-    else if (flag == "--align_origin") question.alignment = "origin";
-    else if (flag == "--n_to_align") n_to_align = ":" + next();
-    else if (flag == "-r") question.relation = RelationOf(next());
-    else if (flag == "--project_to_plane") question.options.project = next();
-    else if (flag == "--t_max_diff") question.options.association.max_difference_s = std::stod(next());
-    else if (flag == "--t_offset") question.options.association.estimate_clock_offset_s = std::stod(next());
-    else if (flag == "--t_start") question.interval.from = ParseTime(next());
-    else if (flag == "--t_end") question.interval.to = ParseTime(next());
-    else if (flag == "-d") delta = next();
-    else if (flag == "-u") unit = next();
-    else if (flag == "-t") question.options.rpe.tolerance = std::stod(next());
-    else if (flag == "--all_pairs") question.options.rpe.pairs = "all";
-    else if (flag == "--pairs_from_reference") question.options.rpe.pairs_from = "truth";
-    else throw std::invalid_argument("flag " + flag);
+    if (flag == "-a")
+      question.alignment = "se3";
+    else if (flag == "-as")
+      question.alignment = "sim3";
+    else if (flag == "-s")
+      question.alignment = "scale";
+    else if (flag == "--align_origin")
+      question.alignment = "origin";
+    else if (flag == "--n_to_align")
+      n_to_align = ":" + next();
+    else if (flag == "-r")
+      question.relation = RelationOf(next());
+    else if (flag == "--project_to_plane")
+      question.options.project = next();
+    else if (flag == "--t_max_diff")
+      question.options.association.max_difference_s = std::stod(next());
+    else if (flag == "--t_offset")
+      question.options.association.estimate_clock_offset_s = std::stod(next());
+    else if (flag == "--t_start")
+      question.interval.from = ParseTime(next());
+    else if (flag == "--t_end")
+      question.interval.to = ParseTime(next());
+    else if (flag == "-d")
+      delta = next();
+    else if (flag == "-u")
+      unit = next();
+    else if (flag == "-t")
+      question.options.rpe.tolerance = std::stod(next());
+    else if (flag == "--all_pairs")
+      question.options.rpe.pairs = "all";
+    else if (flag == "--pairs_from_reference")
+      question.options.rpe.pairs_from = "truth";
+    else
+      throw std::invalid_argument("flag " + flag);
   }
   question.alignment += n_to_align;
   question.options.rpe.deltas = delta + (unit == "d" ? "deg" : unit);
@@ -87,8 +104,9 @@ Statistics Answer(const Question& question) {
     const auto file = ReferencePath(std::filesystem::path(path).filename());
     return question.kitti ? ReadKitti(file) : ReadTum(file);
   };
-  const auto evaluation = Evaluate(read(question.truth), read(question.estimate),
-                                   std::vector{ParseAlignment(question.alignment)}, question.interval, question.options);
+  const auto evaluation =
+      Evaluate(read(question.truth), read(question.estimate), std::vector{ParseAlignment(question.alignment)},
+               question.interval, question.options);
   const auto& result = evaluation.alignments.front();
   return question.relative ? Find(result.rpe.front().relations, question.relation) : result.Ape(question.relation);
 }
@@ -192,7 +210,7 @@ TEST_P(TumReference, EvaluateRpe) {
   EvaluationOptions options;
   options.association.association = "nearest-truth";
   options.rpe.pairs = "closest";
-  options.rpe.deltas = "10f,1s,10m,10deg";
+  options.rpe.deltas = "10f,1s,10m,5deg";
   const auto results = Run("none", options).rpe;
   ASSERT_EQ(results.size(), 4u);
   for (const auto& result : results) {

@@ -31,8 +31,8 @@ Eigen::Vector3d UpDirection(const std::string& up, const Trajectory& truth);
 /// the heading of the motion around its stop. Where even that chord is shorter than `chord` / 2 the heading of the pose
 /// before is held; where nothing has moved yet it is the camera's view direction.
 ///
-/// "body": the true camera's own axes, tilted as it is: longitudinal along its z, lateral along -x, vertical along -y, and
-/// planar in its plane of x and z.
+/// "body": the true camera's own axes, tilted as it is: longitudinal along its z, lateral along -x, vertical along -y,
+/// and planar in its plane of x and z.
 class DrivingFrame {
  public:
   /// `truth` must outlive this object and hold one pose or more; `up` is a unit vector, `chord` in m and positive.

@@ -24,8 +24,9 @@ inline constexpr std::array kAbsoluteRelations{PoseRelation::kTranslation, PoseR
                                                PoseRelation::kRotationRad, PoseRelation::kRotationFrobenius,
                                                PoseRelation::kFull};
 inline constexpr std::array kRelativeRelations{
-    PoseRelation::kTranslation, PoseRelation::kRotationDeg,   PoseRelation::kRotationRad,       PoseRelation::kRotationFrobenius,
-    PoseRelation::kFull,        PoseRelation::kPointDistance, PoseRelation::kPointDistanceRatio};
+    PoseRelation::kTranslation,       PoseRelation::kRotationDeg, PoseRelation::kRotationRad,
+    PoseRelation::kRotationFrobenius, PoseRelation::kFull,        PoseRelation::kPointDistance,
+    PoseRelation::kPointDistanceRatio};
 
 /// "translation", "rotation", "rotation_frobenius", "full", "point_distance", "point_distance_ratio".
 const char* QuantityName(PoseRelation relation);
@@ -42,10 +43,10 @@ const Statistics& Find(std::span<const RelationStatistics> statistics, PoseRelat
 
 /// Errors of a list of poses or motions, one entry each.
 struct PoseDifferences {
-  std::vector<double> translation;      ///< m
-  std::vector<double> rotation;         ///< rad
-  std::vector<double> point_distance;   ///< m; motions only
-  std::vector<double> true_distance;    ///< m; motions only
+  std::vector<double> translation;     ///< m
+  std::vector<double> rotation;        ///< rad
+  std::vector<double> point_distance;  ///< m; motions only
+  std::vector<double> true_distance;   ///< m; motions only
 };
 
 /// Absolute: between each true pose and its estimated one (J. Sturm et al., IROS 2012, section IV.B; over all
