@@ -7,14 +7,21 @@ namespace evo {
 TableRow MetricRow(const std::string& sequence, const std::string& alignment, const std::string& metric,
                    const std::string& quantity, const std::string& unit, double delta, const std::string& delta_unit,
                    const std::string& pairs, const Statistics& statistics) {
-  return {{"sequence", sequence},      {"alignment", alignment},
-          {"metric", metric},          {"quantity", quantity},
-          {"unit", unit},              {"delta", delta},
-          {"delta_unit", delta_unit},  {"pairs", pairs},
-          {"count", statistics.count}, {"rmse", statistics.rmse},
-          {"mean", statistics.mean},   {"median", statistics.median},
+  return {{"sequence", sequence},
+          {"alignment", alignment},
+          {"metric", metric},
+          {"quantity", quantity},
+          {"unit", unit},
+          {"delta", delta},
+          {"delta_unit", delta_unit},
+          {"pairs", pairs},
+          {"count", statistics.count},
+          {"rmse", statistics.rmse},
+          {"mean", statistics.mean},
+          {"median", statistics.median},
           {"std", statistics.standard_deviation},
-          {"min", statistics.min},     {"max", statistics.max},
+          {"min", statistics.min},
+          {"max", statistics.max},
           {"sse", statistics.sse}};
 }
 

@@ -8,8 +8,9 @@
 
 namespace evo {
 
-/// One row of metrics.csv: `sequence,alignment,metric,quantity,unit,delta,delta_unit,pairs,count`, then `rmse,mean,median,
-/// std,min,max` in `unit` and `sse` in its square. `delta_unit` and `pairs` may be empty, and a NaN `delta` is.
+/// One row of metrics.csv: `sequence,alignment,metric,quantity,unit,delta,delta_unit,pairs,count`, then
+/// `rmse,mean,median, std,min,max` in `unit` and `sse` in its square. `delta_unit` and `pairs` may be empty, and a NaN
+/// `delta` is.
 TableRow MetricRow(const std::string& sequence, const std::string& alignment, const std::string& metric,
                    const std::string& quantity, const std::string& unit, double delta, const std::string& delta_unit,
                    const std::string& pairs, const Statistics& statistics);
