@@ -44,8 +44,8 @@ TEST(PairSelection, ReadsDeltas) {
   EXPECT_EQ(deltas[1].unit, DeltaUnit::kSeconds);
   EXPECT_EQ(deltas[1].value, 0.5);
   EXPECT_EQ(deltas[3].name, "5deg");
-  for (const char* text : {"", "1", "f", "0f", "1.5f", "-1m", "nanm", "infm", "181deg", "3.2rad", "10d", "1f,,1s", "1 m",
-                           "1e9s"}) {
+  for (const char* text :
+       {"", "1", "f", "0f", "1.5f", "-1m", "nanm", "infm", "181deg", "3.2rad", "10d", "1f,,1s", "1 m", "1e9s"}) {
     try {
       ParseDeltas(text);
       ADD_FAILURE() << "accepted " << text;
@@ -86,6 +86,12 @@ TEST(PairSelection, AnglesBeginAtTheFirstPose) {
 TEST(PairSelection, DirectAnglesMayHaveSeveralEnds) {
   const auto poses = Along({0, 10, 10.5, 0, 10});
   EXPECT_EQ(Select(poses, "10deg", "all"), (Pairs{{0, 1}, {0, 2}, {0, 4}, {1, 3}, {2, 3}, {3, 4}}));
+}
+
+TEST(PairSelection, TooManyDirectAnglesAreRefused) {
+  std::vector<double> positions;  // each pose is turned by 10 degrees against every second one
+  for (int i = 0; i < 7000; ++i) positions.push_back(i % 2 ? 10.0 : 0.0);
+  EXPECT_THROW(Select(Along(positions), "10deg", "all"), Error);
 }
 
 TEST(PairSelection, SecondsByHand) {
