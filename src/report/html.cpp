@@ -35,9 +35,9 @@ std::string HtmlEscape(std::string_view text) {
 
 std::string DataUri(const std::string& type, const std::string& bytes) {
   std::string base64(4 * ((bytes.size() + 2) / 3) + 1, '\0');  // and the closing zero that OpenSSL writes
-  const int length = ::EVP_EncodeBlock(reinterpret_cast<unsigned char*>(base64.data()),
-                                       reinterpret_cast<const unsigned char*>(bytes.data()),
-                                       static_cast<int>(bytes.size()));
+  const int length =
+      ::EVP_EncodeBlock(reinterpret_cast<unsigned char*>(base64.data()),
+                        reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));
   base64.resize(static_cast<std::size_t>(length));
   return "data:" + type + ";base64," + base64;
 }

@@ -134,7 +134,8 @@ std::vector<std::string> UniqueNames(const std::vector<fs::path>& paths) {
   for (const auto& path : paths) {
     int parts = 1;
     const auto shared = [&] {
-      return std::ranges::count_if(paths, [&](const auto& other) { return Tail(other, parts) == Tail(path, parts); }) > 1;
+      return std::ranges::count_if(paths, [&](const auto& other) { return Tail(other, parts) == Tail(path, parts); }) >
+             1;
     };
     while (shared()) ++parts;
     names.push_back(Tail(path, parts));

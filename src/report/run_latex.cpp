@@ -30,8 +30,8 @@ std::string Header(const std::string& alignment) {
 std::string Remark(const std::string& text) {
   std::string breakable;
   for (const char c : LatexEscape(text)) breakable += c == '/' ? "/\\allowbreak{}" : std::string(1, c);
-  return " & \\multicolumn{" + std::to_string(RunMeasures().size()) + "}{p{0.6\\linewidth}}{\\raggedright " + breakable +
-         "}";
+  return " & \\multicolumn{" + std::to_string(RunMeasures().size()) + "}{p{0.6\\linewidth}}{\\raggedright " +
+         breakable + "}";
 }
 
 std::string Numbers(const CsvTable& runs, std::size_t row) {

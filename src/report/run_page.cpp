@@ -62,26 +62,37 @@ std::string FailureList(const std::vector<RunFolder>& runs) {
          "</ul>\n</section>\n";
 }
 
+std::string MeasureCells(const CsvTable& table, std::size_t row) {
+  std::string cells = "<td>" + HtmlEscape(Cell(table, row, "alignment")) + "</td>";
+  for (const auto& measure : RunMeasures()) {
+    const std::string cell = Cell(table, row, measure.column);
+    cells += "<td class=\"number\" data-value=\"" + HtmlEscape(cell) + "\">" + FormatMeasure(measure, cell) + "</td>";
+  }
+  return cells;
+}
+
+/// What a failed run has in place of its numbers; it sorts as if all of them were empty.
+std::string FailureCell(const CsvTable& table, std::size_t row) {
+  return "<td class=\"wrap failed\" data-value=\"\" colspan=\"" + std::to_string(1 + RunMeasures().size()) + "\">" +
+         HtmlEscape(Cell(table, row, "failure")) + "</td>";
+}
+
 /// A row for each run and alignment with the measures that people compare first.
 std::string ShortTable(const std::vector<RunFolder>& runs, const CsvTable& table) {
   std::ostringstream out;
-  out << OpenTable("Errors, lifetimes and speed") << "<th scope=\"col\">Run</th><th scope=\"col\">Alignment</th>";
+  out << OpenTable("Errors, lifetimes and speed") << "<th scope=\"col\">Run</th><th scope=\"col\">Status</th>"
+      << "<th scope=\"col\">Alignment</th>";
   for (const auto& measure : RunMeasures()) {
     out << "<th scope=\"col\" class=\"number\">" << measure.heading << "<span class=\"unit\"> " << measure.unit
         << "</span></th>";
   }
-  out << "<th scope=\"col\">Status</th></tr></thead>\n<tbody>\n";
+  out << "</tr></thead>\n<tbody>\n";
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    out << "<tr><th scope=\"row\">" << RunLink(runs, Cell(table, i, "run")) << "</th><td>"
-        << HtmlEscape(Cell(table, i, "alignment")) << "</td>";
-    for (const auto& measure : RunMeasures()) {
-      const std::string cell = Cell(table, i, measure.column);
-      out << "<td class=\"number\" data-value=\"" << HtmlEscape(cell) << "\">" << FormatMeasure(measure, cell)
-          << "</td>";
-    }
     const bool failed = Cell(table, i, "status") == "failed";
-    out << (failed ? "<td class=\"wrap failed\">failed: " + HtmlEscape(Cell(table, i, "failure")) : "<td>ok")
-        << "</td></tr>\n";
+    out << "<tr><th scope=\"row\">" << RunLink(runs, Cell(table, i, "run")) << "</th>"
+        << (failed ? "<td class=\"failed\">failed</td>" + FailureCell(table, i)
+                   : "<td>ok</td>" + MeasureCells(table, i))
+        << "</tr>\n";
   }
   out << kCloseTable;
   return out.str();
@@ -127,7 +138,8 @@ std::string Picture(const fs::path& path, const std::string& type) {
   const std::string name = HtmlEscape(path.filename().string());
   const std::uintmax_t bytes = fs::file_size(path);
   if (bytes > kLargestPicture) {
-    return "<figure><figcaption>" + name + " (" + Megabytes(bytes) + ") is too large for this page.</figcaption></figure>\n";
+    return "<figure><figcaption>" + name + " (" + Megabytes(bytes) +
+           ") is too large for this page.</figcaption></figure>\n";
   }
   return "<figure><img alt=\"" + name + "\" src=\"" + DataUri(type, ReadTextFile(path)) + "\"><figcaption>" + name +
          "</figcaption></figure>\n";
@@ -173,7 +185,8 @@ std::string Warnings(const RunFolder& run) {
   std::string text;
   for (const auto& warning : run.warnings) text += HtmlEscape(warning) + "\n";
   if (run.manifest) {
-    for (const TimeNs stamp : run.manifest->rebootstraps) text += "odometry started anew at " + FormatTime(stamp) + " s\n";
+    for (const TimeNs stamp : run.manifest->rebootstraps)
+      text += "odometry started anew at " + FormatTime(stamp) + " s\n";
   }
   return text.empty() ? "" : "<h3>Warnings</h3>\n<pre>" + text + "</pre>\n";
 }
@@ -204,8 +217,8 @@ std::string Parameters(const CsvTable& table, const std::string& run) {
 }  // namespace
 
 std::string RunsPage(const std::string& title, const std::vector<RunFolder>& runs, const CsvTable& table) {
-  const auto failed = static_cast<std::size_t>(
-      std::ranges::count_if(runs, [](const RunFolder& run) { return !run.failure.empty(); }));
+  const auto failed =
+      static_cast<std::size_t>(std::ranges::count_if(runs, [](const RunFolder& run) { return !run.failure.empty(); }));
   std::ostringstream body;
   body << "<h1>" << HtmlEscape(title) << "</h1>\n<p class=\"lead\">" << Plural(runs.size(), "run") << ", "
        << (failed == 0 ? "none" : std::to_string(failed)) << " failed</p>\n"
@@ -217,10 +230,8 @@ std::string RunsPage(const std::string& title, const std::vector<RunFolder>& run
   for (std::size_t i = 0; i < runs.size(); ++i) {
     body << RunDetails(runs[i], i + 1, Parameters(table, runs[i].name));
   }
-  return FillIn(kPageTemplate, {{"title", HtmlEscape(title)},
-                                {"style", kPageStyle},
-                                {"script", kPageScript},
-                                {"body", body.str()}});
+  return FillIn(kPageTemplate,
+                {{"title", HtmlEscape(title)}, {"style", kPageStyle}, {"script", kPageScript}, {"body", body.str()}});
 }
 
 }  // namespace evo

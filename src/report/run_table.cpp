@@ -120,9 +120,8 @@ std::vector<ParameterDifference> CompareParameters(const std::vector<RunFolder>&
     }
   }
   std::erase_if(parameters, [&](const ParameterDifference& parameter) {
-    return std::ranges::all_of(described, [&](std::size_t i) {
-      return parameter.values[i] == parameter.values[described.front()];
-    });
+    return std::ranges::all_of(
+        described, [&](std::size_t i) { return parameter.values[i] == parameter.values[described.front()]; });
   });
   return parameters;
 }

@@ -14,9 +14,9 @@ namespace evo {
 /// What a run left in its output folder, as far as a comparison of runs needs it.
 struct RunFolder {
   std::filesystem::path path;
-  std::string name;     ///< the folder's own; with the folders above it where two would have the same
-  std::string failure;  ///< what went wrong, in one line; empty for a run that was completed
-  std::optional<CsvTable> summary;                              ///< summary.csv; never of a failed run
+  std::string name;                 ///< the folder's own; with the folders above it where two would have the same
+  std::string failure;              ///< what went wrong, in one line; empty for a run that was completed
+  std::optional<CsvTable> summary;  ///< summary.csv; never of a failed run
   std::vector<std::pair<std::string, std::string>> lifetimes;  ///< columns for the table of runs, from lifetime.csv
   std::optional<Manifest> manifest;
   std::vector<std::string> warnings;          ///< lines of log.txt that begin with "warning:"

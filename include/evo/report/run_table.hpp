@@ -30,8 +30,8 @@ std::vector<ParameterDifference> CompareParameters(const std::vector<RunFolder>&
 /// `wanted`.
 std::string ChooseAlignment(const std::vector<RunFolder>& runs, const std::string& wanted);
 
-/// runs.tex: a booktabs table, a row for each run with its numbers under `alignment`, from what MergeRuns returns; a run
-/// that failed or was not aligned so has a row that says it. Goes into a document that loads booktabs.
+/// runs.tex: a booktabs table, a row for each run with its numbers under `alignment`, from what MergeRuns returns; a
+/// run that failed or was not aligned so has a row that says it. Goes into a document that loads booktabs.
 std::string RunsLatex(const CsvTable& runs, const std::string& alignment);
 
 }  // namespace evo

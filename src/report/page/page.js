@@ -3,9 +3,10 @@
 // Tables of class "sortable": the headings become buttons that sort by their column, numbers as numbers, empty cells
 // last. Without this script they are plain tables.
 
+// A failed run has one wide cell in place of its numbers, so some columns have no cell of their own.
 function cellKey(row, column) {
   const cell = row.cells[column];
-  return cell.dataset.value ?? cell.textContent.trim();
+  return cell ? (cell.dataset.value ?? cell.textContent.trim()) : "";
 }
 
 function compareKeys(a, b, numeric) {
