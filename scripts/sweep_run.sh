@@ -12,7 +12,7 @@ touch "$folder/started"
 echo "run        $folder"
 "$@" --out "$folder" >"$folder/output.txt" 2>"$folder/log.txt" &
 run=$!
-trap 'kill "$run" 2>/dev/null; wait "$run"; rm -rf "$folder"; exit 130' INT TERM
+trap 'kill "$run" 2>/dev/null || true; wait "$run" || true; rm -rf "$folder"; exit 130' INT TERM
 code=0
 wait "$run" || code=$?
 trap - INT TERM

@@ -88,15 +88,18 @@ std::vector<fs::path> FilesNamed(const fs::path& folder, const std::string& pref
   std::error_code none;  // most folders have no such subfolder
   for (const auto& entry : fs::directory_iterator(folder, none)) {
     const std::string name = entry.path().filename().string();
-    if (name.starts_with(prefix) && name.ends_with(suffix)) files.push_back(entry.path());
+    if (name.starts_with(prefix) && name.ends_with(suffix) && entry.is_regular_file(none))
+      files.push_back(entry.path());
   }
   std::ranges::sort(files);
   return files;
 }
 
 RunFolder ReadRunFolder(const fs::path& path) {
-  if (!fs::is_directory(path)) throw Error(ErrorKind::kInput, path.string() + ": no such folder; check the name");
-  const auto has = [&](const char* name) { return fs::exists(path / name); };
+  std::error_code unreadable;
+  if (!fs::is_directory(path, unreadable))
+    throw Error(ErrorKind::kInput, path.string() + ": no such folder; check the name");
+  const auto has = [&](const char* name) { return fs::exists(path / name, unreadable); };
   RunFolder run;
   run.path = path;
   if (has("failure.txt")) {
