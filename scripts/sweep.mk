@@ -25,7 +25,7 @@ OUT/NAME/failure.txt and a row in the report; the others go on. make ends with 2
   THREADS    for each run; default: the processors divided by the jobs of -j
   EVO_RUN    the program; default build/release/bin/evo-run
 
-Needs GNU make 4. Paths must not hold blanks.
+Needs GNU make 4. Paths must not hold blanks or other characters that the shell or make treat specially.
 endef
 
 SWEEP := $(lastword $(MAKEFILE_LIST))

@@ -147,8 +147,9 @@ TEST_F(SweepTest, DataSetsKnowTheirFiles) {
        "m/indoor_flying/indoor_flying4_data.hdf5 --calibration "
        "m/indoor_flying/indoor_flying_calib/camchain-imucam-indoor_flying.yaml --ground-truth "
        "m/indoor_flying/indoor_flying4_gt.hdf5 --ground-truth-source cartographer "},
-      {"shapes_6dof", "u/shapes_6dof/events.txt --calibration u/shapes_6dof/calib.txt --ground-truth "
-                      "u/shapes_6dof/groundtruth.txt "},
+      {"shapes_6dof",
+       "u/shapes_6dof/events.txt --calibration u/shapes_6dof/calib.txt --ground-truth "
+       "u/shapes_6dof/groundtruth.txt "},
       {"urban", "u/urban/events.txt --calibration u/urban/calib.txt "}};
   for (const auto& [name, arguments] : expected) {
     EXPECT_EQ(ReadFile(folder / "out/.arguments" / name),

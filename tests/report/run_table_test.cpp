@@ -11,11 +11,11 @@ using RunTableTest = RunsTest;
 TEST_F(RunTableTest, HasARowForEachRunAndAlignment) {
   const auto runs = ReadRunFolders({EvaluatedRun("day"), FailedRun("bad", "exit code 4: gone"), TrackedRun("tracks")});
   const auto table = MergeRuns(runs);
-  EXPECT_EQ(table.columns, (std::vector<std::string>{
-                               "run", "status", "failure", "sequence", "alignment", "coverage", "mean_planar_m",
-                               "lifetime_mean_frames", "lifetime_std_frames", "lifetime_mean_s", "lifetime_std_s",
-                               "lifetime_tracks", "recorded_s", "speed_x_real_time", "threads", "wall_track_s",
-                               "wall_odometry_s", "parameters"}));
+  EXPECT_EQ(table.columns,
+            (std::vector<std::string>{"run", "status", "failure", "sequence", "alignment", "coverage", "mean_planar_m",
+                                      "lifetime_mean_frames", "lifetime_std_frames", "lifetime_mean_s",
+                                      "lifetime_std_s", "lifetime_tracks", "recorded_s", "speed_x_real_time", "threads",
+                                      "wall_track_s", "wall_odometry_s", "parameters"}));
   ASSERT_EQ(table.rows.size(), 4u);
   for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.columns.size());
   EXPECT_EQ(Cell(table, 0, "alignment"), "origin-scale");
@@ -43,9 +43,9 @@ TEST_F(RunTableTest, ColumnsOfAllSummariesMeet) {
 }
 
 TEST_F(RunTableTest, OnlyParametersThatDifferAreNamed) {
-  const auto runs = ReadRunFolders({EvaluatedRun("a", {{"x.one", "1"}, {"x.two", "2"}, {"x.three", "3"}}),
-                                    FailedRun("b", "gone"),
-                                    EvaluatedRun("c", {{"x.one", "1"}, {"x.two", "5"}, {"x.new", "n"}})});
+  const auto runs =
+      ReadRunFolders({EvaluatedRun("a", {{"x.one", "1"}, {"x.two", "2"}, {"x.three", "3"}}), FailedRun("b", "gone"),
+                      EvaluatedRun("c", {{"x.one", "1"}, {"x.two", "5"}, {"x.new", "n"}})});
   const auto differences = CompareParameters(runs);
   ASSERT_EQ(differences.size(), 3u);
   EXPECT_EQ(differences[0].name, "x.two");
