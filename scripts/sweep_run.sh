@@ -6,6 +6,12 @@ set -euo pipefail
 folder=$1
 shift
 
+# Only what an earlier run of a sweep left is ever deleted: OUT may have been pointed at somebody's recordings.
+if [ -n "$(ls -A "$folder" 2>/dev/null)" ] && ! [ -e "$folder/complete" ] && ! [ -e "$folder/failure.txt" ] &&
+  ! [ -e "$folder/started" ]; then
+  echo "$folder: this folder is not the result of a sweep and is left alone; choose another OUT" >&2
+  exit 1
+fi
 rm -rf "$folder"
 mkdir -p "$folder"
 touch "$folder/started"

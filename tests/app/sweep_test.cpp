@@ -164,6 +164,14 @@ TEST_F(SweepTest, WhatIsNamedAndMissingIsAFailure) {
   EXPECT_EQ(CountRows("absent,failed,exit code 4: absent: no such file"), 1) << err;
 }
 
+TEST_F(SweepTest, DeletesOnlyResultsOfSweeps) {
+  fs::create_directory(folder / "recordings");
+  AddRecording("recordings/street");
+  EXPECT_EQ(Sweep("FOLDERS=recordings/street OUT=recordings"), 2);
+  EXPECT_NE(err.find("not the result of a sweep"), std::string::npos) << err;
+  EXPECT_TRUE(fs::exists(folder / "recordings/street/street_data.hdf5"));
+}
+
 TEST_F(SweepTest, MistakesAreSaid) {
   EXPECT_EQ(Sweep(""), 2);
   EXPECT_NE(err.find("nothing to run"), std::string::npos) << err;
