@@ -67,8 +67,9 @@ std::vector<RelativePoseError> ComputeRelativePoseErrors(std::span<const PosePai
       for (auto& motion : motions) std::swap(motion.first, motion.second);
     }
     if (motions.empty() && options.required) {
-      throw Error(ErrorKind::kNothingToDo, "no two of the " + std::to_string(pairs.size()) + " matched poses are " +
-                                               delta.name + " apart; choose a smaller distance or a larger tolerance");
+      throw Error(ErrorKind::kNothingToDo, "no pair (" + options.pairs + ") of the " + std::to_string(pairs.size()) +
+                                               " matched poses is " + delta.name +
+                                               " apart; choose a smaller distance or a larger tolerance");
     }
     results.push_back({delta, options.pairs, Summarize(RelativeDifferences(pairs, motions), kRelativeRelations)});
   }
