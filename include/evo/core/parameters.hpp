@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -20,6 +21,8 @@ class Parameters {
   void Add(std::string name, int* value, int lowest, int highest, std::string help);
   void Add(std::string name, bool* value, std::string help);
   void Add(std::string name, std::string* value, std::vector<std::string> choices, std::string help);
+  /// Free text; `check` throws an Error that says what is expected where the text is none of it.
+  void Add(std::string name, std::string* value, std::function<void(const std::string&)> check, std::string help);
 
   void LoadFile(const std::filesystem::path& path);
   /// `source` names the text in messages.
@@ -41,6 +44,7 @@ class Parameters {
     double highest = std::numeric_limits<double>::infinity();
     std::vector<std::string> choices;
     std::string help;
+    std::function<void(const std::string&)> check;  ///< free text only
   };
 
   Entry* Find(std::string_view name);
