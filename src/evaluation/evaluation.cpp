@@ -128,6 +128,7 @@ void Register(Parameters& parameters, EvaluationOptions& options) {
   parameters.Add("evaluation.chord_m", &options.chord_m, 1e-3, 1e3,
                  "length of truth that gives the direction of travel (m)");
   parameters.Add("evaluation.gap_s", &options.gap_s, 1e-3, 1e3, "a longer stretch without a pose is a gap (s)");
+  Register(parameters, options.segments);
 }
 
 Evaluation Evaluate(const Trajectory& truth, const Trajectory& estimate, std::span<const Alignment> alignments,
@@ -173,6 +174,8 @@ Evaluation Evaluate(const Trajectory& truth, const Trajectory& estimate, std::sp
     result.planar = Summarize(result.errors, &DrivingError::planar);
     result.ape = ComputeStatistics(Column(result.errors, [](const PoseError& e) { return e.translation; }));
     result.rotation_deg = ComputeStatistics(Column(result.errors, [](const PoseError& e) { return e.rotation_deg; }));
+    result.segments = EvaluateSegments(MatchPath(pairs, result.similarity), evaluation.up, evaluation.from,
+                                       evaluation.longest_gap, options.segments);
     evaluation.alignments.push_back(std::move(result));
   }
   return evaluation;

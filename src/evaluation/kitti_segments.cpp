@@ -13,6 +13,7 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 KittiSegments ComputeKittiSegments(const MatchedPath& path, std::span<const double> lengths_m, int step) {
   KittiSegments segments;
+  segments.step = step;
   std::vector<double> all_translations;
   std::vector<double> all_rotations;
   for (const double length : lengths_m) {

@@ -51,9 +51,10 @@ std::vector<double> ParseLengths(const std::string& text, double path_m) {
       throw Error(ErrorKind::kConfiguration,
                   "'" + item + "' is no length; give positive metres or shares of the path, for example 100,50m,10%");
     }
-    lengths.push_back(unit == "%" ? length / 100.0 * path_m : length);
+    if (unit == "%") length *= path_m / 100.0;
+    if (length > 0.0) lengths.push_back(length);
   }
-  if (lengths.empty()) throw Error(ErrorKind::kConfiguration, "no length given; for example 100,50m,10%");
+  if (text.empty()) throw Error(ErrorKind::kConfiguration, "no length given; for example 100,50m,10%");
   return lengths;
 }
 

@@ -71,7 +71,9 @@ TableRow SummaryRow(const std::string& sequence, const Evaluation& evaluation, c
                                     {"ape_sse_m2", ape.sse},
                                     {"ape_rotation_rmse_deg", result.rotation_deg.rmse},
                                     {"ape_rotation_mean_deg", result.rotation_deg.mean},
-                                    {"ape_rotation_max_deg", result.rotation_deg.max}}) {
+                                    {"ape_rotation_max_deg", result.rotation_deg.max},
+                                    {"kitti_translation_percent", result.segments.kitti.translation_percent.mean},
+                                    {"kitti_rotation_deg_per_m", result.segments.kitti.rotation_deg_per_m.mean}}) {
     row.emplace_back(name, value);
   }
   return row;

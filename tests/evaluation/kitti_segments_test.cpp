@@ -137,8 +137,8 @@ TEST(KittiSegments, FindTheEndsOfALinearSearch) {
     std::int64_t count = 0;
     for (std::size_t first = 0; first < pairs.size(); first += 3) {
       for (std::size_t last = first; last < pairs.size(); ++last) {
-        const double travelled = (pairs[last].T_world_cam_truth.translation() -
-                                  pairs[first].T_world_cam_truth.translation()).x();
+        const double travelled =
+            (pairs[last].T_world_cam_truth.translation() - pairs[first].T_world_cam_truth.translation()).x();
         if (travelled <= length) continue;
         sum += 100.0 * 0.01 * static_cast<double>(last - first) / length;
         ++count;
@@ -153,6 +153,7 @@ TEST(KittiSegments, FindTheEndsOfALinearSearch) {
 
 TEST(Lengths, AreMetresOrSharesOfThePath) {
   EXPECT_EQ(ParseLengths("100,50m,10%", 30.0), (std::vector{100.0, 50.0, 3.0}));
+  EXPECT_EQ(ParseLengths("5,10%", 0.0), std::vector{5.0});
   for (const std::string bad : {"", "0", "-5", "10 m", "ten", "10,,20", "5km", "nan", "inf", "1e999", "10%%"}) {
     try {
       ParseLengths(bad, 30.0);

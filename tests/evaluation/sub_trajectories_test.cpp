@@ -54,17 +54,16 @@ std::vector<PosePair> AssociateAsReference(const std::string& estimate) {
   AssociationOptions options;
   options.association = "nearest";
   options.max_difference_s = 0.02;
-  const auto pairs =
-      Associate(ReadReferenceTrajectory("gt.txt"), ReadReferenceTrajectory(estimate + ".txt"), options);
+  const auto pairs = Associate(ReadReferenceTrajectory("gt.txt"), ReadReferenceTrajectory(estimate + ".txt"), options);
   std::set<TimeNs> used;
   for (const auto& pair : pairs) EXPECT_TRUE(used.insert(pair.t_truth).second);
   return pairs;
 }
 
 std::map<std::string, Statistics> ByLabel(const SubTrajectoryErrors& errors) {
-  return {{"trans", errors.translation_m},         {"trans_perc", errors.translation_percent},
-          {"rot", errors.rotation_deg},            {"rot_deg_per_m", errors.rotation_deg_per_m},
-          {"yaw", errors.yaw_deg},                 {"gravity", errors.gravity_deg}};
+  return {{"trans", errors.translation_m}, {"trans_perc", errors.translation_percent},
+          {"rot", errors.rotation_deg},    {"rot_deg_per_m", errors.rotation_deg_per_m},
+          {"yaw", errors.yaw_deg},         {"gravity", errors.gravity_deg}};
 }
 
 std::map<std::string, Statistics> AbsoluteErrors(const MatchedPath& path) {

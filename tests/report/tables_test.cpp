@@ -43,7 +43,8 @@ TEST_F(TablesTest, SummaryColumnsStayWhatTheyAre) {
       "rmse_vertical_percent,rmse_planar_percent,max_longitudinal_percent,max_lateral_percent,max_vertical_percent,"
       "max_planar_percent,final_longitudinal_percent,final_lateral_percent,final_vertical_percent,"
       "final_planar_percent,ape_rmse_m,ape_mean_m,ape_median_m,ape_std_m,ape_min_m,ape_max_m,ape_sse_m2,"
-      "ape_rotation_rmse_deg,ape_rotation_mean_deg,ape_rotation_max_deg\n"))
+      "ape_rotation_rmse_deg,ape_rotation_mean_deg,ape_rotation_max_deg,kitti_translation_percent,kitti_rotation_deg_"
+      "per_m\n"))
       << csv;
   EXPECT_NE(csv.find("\n\"drive, \"\"day\"\"\",none,1.000000000,182,0.900000000,1,100.000000000,"), std::string::npos)
       << csv;

@@ -21,8 +21,9 @@ class Parameters {
   void Add(std::string name, int* value, int lowest, int highest, std::string help);
   void Add(std::string name, bool* value, std::string help);
   void Add(std::string name, std::string* value, std::vector<std::string> choices, std::string help);
-  /// Free text; `check` throws an Error that says what is expected where the text is none of it.
-  void Add(std::string name, std::string* value, std::function<void(const std::string&)> check, std::string help);
+  /// Any text that is `valid`; `expected` says what is.
+  void Add(std::string name, std::string* value, std::function<bool(const std::string&)> valid, std::string expected,
+           std::string help);
 
   void LoadFile(const std::filesystem::path& path);
   /// `source` names the text in messages.
@@ -44,7 +45,8 @@ class Parameters {
     double highest = std::numeric_limits<double>::infinity();
     std::vector<std::string> choices;
     std::string help;
-    std::function<void(const std::string&)> check;  ///< free text only
+    std::function<bool(const std::string&)> valid;  ///< of a text without choices
+    std::string expected;
   };
 
   Entry* Find(std::string_view name);

@@ -11,6 +11,7 @@
 #include "evo/evaluation/alignment.hpp"
 #include "evo/evaluation/association.hpp"
 #include "evo/evaluation/driving.hpp"
+#include "evo/evaluation/segments.hpp"
 #include "evo/evaluation/statistics.hpp"
 #include "evo/geometry/trajectory.hpp"
 
@@ -18,6 +19,7 @@ namespace evo {
 
 struct EvaluationOptions {
   AssociationOptions association;
+  SegmentOptions segments;
   std::string up = "auto";  ///< see UpDirection
   double chord_m = 1.0;     ///< see DrivingFrame
   double gap_s = 0.5;       ///< a longer stretch without an estimated pose is a gap
@@ -58,6 +60,7 @@ struct AlignedEvaluation {
   ErrorSummary longitudinal, lateral, vertical, planar;
   Statistics ape;           ///< absolute pose error, translation, m
   Statistics rotation_deg;  ///< absolute pose error, rotation angle, degrees
+  SegmentEvaluation segments;
 };
 
 struct Evaluation {
