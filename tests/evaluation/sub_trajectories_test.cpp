@@ -54,7 +54,7 @@ std::vector<PosePair> AssociateAsReference(const std::string& estimate) {
   AssociationOptions options;
   options.association = "nearest";
   options.max_difference_s = 0.02;
-  const auto pairs = Associate(ReadReferenceTrajectory("gt.txt"), ReadReferenceTrajectory(estimate + ".txt"), options);
+  auto pairs = Associate(ReadReferenceTrajectory("gt.txt"), ReadReferenceTrajectory(estimate + ".txt"), options);
   std::set<TimeNs> used;
   for (const auto& pair : pairs) EXPECT_TRUE(used.insert(pair.t_truth).second);
   return pairs;
@@ -233,6 +233,25 @@ TEST(SubTrajectories, AreThoseOfAPlainSearch) {
     }
   }
   EXPECT_GT(passed_over, 0);
+}
+
+TEST(SubTrajectories, EndAtTheEarlierOfTwoEquallyNearAndNotTooFarOff) {
+  const auto count_and_error = [](const std::vector<double>& truth, const std::vector<double>& estimate) {
+    std::vector<PosePair> pairs;
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      const auto at = [](double x) { return SE3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0, 0)); };
+      pairs.push_back({static_cast<TimeNs>(i), static_cast<TimeNs>(i), at(estimate[i]), at(truth[i])});
+    }
+    const auto errors = ComputeSubTrajectoryErrors(MatchPath(pairs), std::vector{10.0}, kUp);
+    return errors.empty() ? std::pair{0, 0.0}
+                          : std::pair{static_cast<int>(errors[0].translation_m.count), errors[0].translation_m.max};
+  };
+  EXPECT_EQ(count_and_error({0, 9, 11}, {0, 9, 12}), std::pair(1, 0.0));
+  EXPECT_EQ(count_and_error({0, 9, 10.5}, {0, 9, 11.5}), std::pair(1, 1.0));
+  EXPECT_EQ(count_and_error({0, 9, 9, 12}, {0, 9, 10, 12}), std::pair(1, 0.0));  // the first of two at one place
+  EXPECT_EQ(count_and_error({0, 12}, {0, 12}), std::pair(0, 0.0));               // 20 % off
+  EXPECT_EQ(count_and_error({0, 8}, {0, 8}), std::pair(0, 0.0));
+  EXPECT_EQ(count_and_error({0, 11.5}, {0, 11.5}), std::pair(1, 0.0));
 }
 
 TEST(SubTrajectories, NameTurnsAboutUpYawAndTheRestGravity) {

@@ -28,9 +28,9 @@ double Number(const TableRow& row, std::size_t column) { return std::get<double>
 TEST(SegmentRows, AreOneForEachQuantityLengthAndAlignment) {
   const auto rows = SegmentMetricRows("day", Drive("20,40,500", "10%,50m,500"));
   ASSERT_EQ(rows.size(), 2U * (2 * 2 + 2 + 2 * 6));
-  const std::vector<std::string> columns = {"sequence", "alignment", "metric", "quantity", "unit", "delta",
-                                            "delta_unit", "pairs", "count", "rmse", "mean", "median",
-                                            "std", "min", "max", "sse"};
+  const std::vector<std::string> columns = {"sequence",   "alignment", "metric", "quantity", "unit", "delta",
+                                            "delta_unit", "pairs",     "count",  "rmse",     "mean", "median",
+                                            "std",        "min",       "max",    "sse"};
   for (const auto& row : rows) {
     ASSERT_EQ(row.size(), columns.size());
     for (std::size_t i = 0; i < columns.size(); ++i) EXPECT_EQ(row[i].first, columns[i]);
@@ -60,9 +60,7 @@ TEST(SegmentRows, AreOneForEachQuantityLengthAndAlignment) {
   EXPECT_EQ(Text(rows[18], 1), "origin");
 }
 
-TEST(SegmentRows, AreLeftOutWhereNoLengthFits) {
-  EXPECT_TRUE(SegmentMetricRows("day", Drive("500", "500m")).empty());
-}
+TEST(SegmentRows, AreLeftOutWhereNoLengthFits) { EXPECT_TRUE(SegmentMetricRows("day", Drive("500", "500m")).empty()); }
 
 TEST(SegmentRows, KnowACameraThatStands) {
   const Trajectory still = {{0, SE3()}, {kNsPerSecond / 10, SE3()}};
