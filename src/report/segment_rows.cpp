@@ -2,41 +2,18 @@
 
 #include <limits>
 
+#include "evo/report/metric_rows.hpp"
+
 namespace evo {
 
 namespace {
 
-struct Metric {
-  std::string name;
-  std::string pairs;
-  double length_m;
-};
-
-TableRow MetricRow(const TableRow& head, const Metric& metric, const std::string& quantity, const std::string& unit,
-                   const Statistics& statistics) {
-  TableRow row = head;
-  row.insert(row.end(), {{"metric", metric.name},
-                         {"quantity", quantity},
-                         {"unit", unit},
-                         {"delta", metric.length_m},
-                         {"delta_unit", "m"},
-                         {"pairs", metric.pairs},
-                         {"count", statistics.count},
-                         {"rmse", statistics.rmse},
-                         {"mean", statistics.mean},
-                         {"median", statistics.median},
-                         {"std", statistics.standard_deviation},
-                         {"min", statistics.min},
-                         {"max", statistics.max},
-                         {"sse", statistics.sse}});
-  return row;
-}
-
-void AppendKitti(std::vector<TableRow>* rows, const TableRow& head, const KittiSegments& kitti) {
+void AppendKitti(std::vector<TableRow>* rows, const std::string& sequence, const std::string& alignment,
+                 const KittiSegments& kitti) {
+  const std::string starts = "every " + std::to_string(kitti.step);
   const auto append = [&](double length_m, const Statistics& translation, const Statistics& rotation) {
-    const Metric metric{"kitti", "every " + std::to_string(kitti.step), length_m};
-    rows->push_back(MetricRow(head, metric, "translation", "%", translation));
-    rows->push_back(MetricRow(head, metric, "rotation", "deg/m", rotation));
+    rows->push_back(MetricRow(sequence, alignment, "kitti", "translation", "%", length_m, "m", starts, translation));
+    rows->push_back(MetricRow(sequence, alignment, "kitti", "rotation", "deg/m", length_m, "m", starts, rotation));
   };
   for (const auto& length : kitti.lengths) {
     append(length.length_m, length.translation_percent, length.rotation_deg_per_m);
@@ -45,14 +22,18 @@ void AppendKitti(std::vector<TableRow>* rows, const TableRow& head, const KittiS
   append(std::numeric_limits<double>::quiet_NaN(), kitti.translation_percent, kitti.rotation_deg_per_m);
 }
 
-void AppendSubTrajectory(std::vector<TableRow>* rows, const TableRow& head, const SubTrajectoryErrors& errors) {
-  const Metric metric{"subtrajectory", "all", errors.length_m};
-  rows->push_back(MetricRow(head, metric, "translation", "m", errors.translation_m));
-  rows->push_back(MetricRow(head, metric, "translation", "%", errors.translation_percent));
-  rows->push_back(MetricRow(head, metric, "rotation", "deg", errors.rotation_deg));
-  rows->push_back(MetricRow(head, metric, "rotation", "deg/m", errors.rotation_deg_per_m));
-  rows->push_back(MetricRow(head, metric, "yaw", "deg", errors.yaw_deg));
-  rows->push_back(MetricRow(head, metric, "gravity", "deg", errors.gravity_deg));
+void AppendSubTrajectory(std::vector<TableRow>* rows, const std::string& sequence, const std::string& alignment,
+                         const SubTrajectoryErrors& errors) {
+  const auto append = [&](const std::string& quantity, const std::string& unit, const Statistics& statistics) {
+    rows->push_back(
+        MetricRow(sequence, alignment, "subtrajectory", quantity, unit, errors.length_m, "m", "all", statistics));
+  };
+  append("translation", "m", errors.translation_m);
+  append("translation", "%", errors.translation_percent);
+  append("rotation", "deg", errors.rotation_deg);
+  append("rotation", "deg/m", errors.rotation_deg_per_m);
+  append("yaw", "deg", errors.yaw_deg);
+  append("gravity", "deg", errors.gravity_deg);
 }
 
 }  // namespace
@@ -60,9 +41,9 @@ void AppendSubTrajectory(std::vector<TableRow>* rows, const TableRow& head, cons
 std::vector<TableRow> SegmentMetricRows(const std::string& sequence, const Evaluation& evaluation) {
   std::vector<TableRow> rows;
   for (const auto& result : evaluation.alignments) {
-    const TableRow head{{"sequence", sequence}, {"alignment", result.alignment.name}};
-    AppendKitti(&rows, head, result.segments.kitti);
-    for (const auto& errors : result.segments.sub_trajectories) AppendSubTrajectory(&rows, head, errors);
+    const std::string& name = result.alignment.name;
+    AppendKitti(&rows, sequence, name, result.segments.kitti);
+    for (const auto& errors : result.segments.sub_trajectories) AppendSubTrajectory(&rows, sequence, name, errors);
   }
   return rows;
 }

@@ -7,7 +7,6 @@
 #include <map>
 #include <numbers>
 #include <random>
-#include <set>
 
 #include "reference.hpp"
 
@@ -19,45 +18,18 @@ const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();
 
 using Row = std::map<std::string, std::string>;
 
-/// Position and yaw: rotation about z and translation with the least squared error of position, or, from one pose, with
-/// the least difference in orientation there.
-Similarity AlignPositionAndYaw(std::span<const PosePair> pairs) {
-  const auto n = static_cast<double>(pairs.size());
-  Eigen::Vector3d truth = Eigen::Vector3d::Zero();
-  Eigen::Vector3d estimate = Eigen::Vector3d::Zero();
-  for (const auto& pair : pairs) {
-    truth += pair.T_world_cam_truth.translation() / n;
-    estimate += pair.T_world_cam_estimate.translation() / n;
-  }
-  Eigen::Matrix3d M = Eigen::Matrix3d::Zero();  // what the rotation should bring to a large trace
-  for (const auto& pair : pairs) {
-    M += pairs.size() == 1
-             ? (pair.T_world_cam_truth.rotation() * pair.T_world_cam_estimate.rotation().conjugate()).matrix()
-             : (pair.T_world_cam_truth.translation() - truth) *
-                   (pair.T_world_cam_estimate.translation() - estimate).transpose();
-  }
-  const double yaw = std::atan2(M(1, 0) - M(0, 1), M(0, 0) + M(1, 1));
-  const Eigen::Quaterniond rotation = so3::Exp(yaw * kUp);
-  return {1.0, SE3(rotation, truth - rotation * estimate)};
-}
-
 /// The program's alignments over its first `n` pairs, -1 for all.
 Similarity AlignAsReference(std::span<const PosePair> pairs, const std::string& alignment, int n) {
-  if (n > 0) pairs = pairs.first(static_cast<std::size_t>(n));
-  if (alignment == "posyaw") return AlignPositionAndYaw(pairs);
-  return Align(pairs, ParseAlignment(alignment == "se3" && n == 1 ? "origin" : alignment));
+  std::string name = alignment == "se3" && n == 1 ? "origin" : alignment;
+  if (n > 0 && name != "origin") name += ":" + std::to_string(n);
+  return Align(pairs, ParseAlignment(name), kUp);
 }
 
-/// Pairs as the program makes them: stamps up to 0.02 s apart, the nearest first, each used once. The reference's
-/// estimates stand 3 ms beside every second true stamp, so the nearest is never used twice.
+/// Pairs as the program makes them: stamps up to 0.02 s apart, the nearest first, each used once.
 std::vector<PosePair> AssociateAsReference(const std::string& estimate) {
   AssociationOptions options;
-  options.association = "nearest";
-  options.max_difference_s = 0.02;
-  auto pairs = Associate(ReadReferenceTrajectory("gt.txt"), ReadReferenceTrajectory(estimate + ".txt"), options);
-  std::set<TimeNs> used;
-  for (const auto& pair : pairs) EXPECT_TRUE(used.insert(pair.t_truth).second);
-  return pairs;
+  options.association = "unique";
+  return Associate(ReadReferenceTrajectory("gt.txt"), ReadReferenceTrajectory(estimate + ".txt"), options);
 }
 
 std::map<std::string, Statistics> ByLabel(const SubTrajectoryErrors& errors) {
