@@ -29,8 +29,7 @@ PoseDifferences RelativeDifferences(std::span<const PosePair> pairs, std::span<c
 Trajectory Matched(std::span<const PosePair> pairs, bool of_truth) {
   Trajectory poses;
   for (const auto& pair : pairs) {
-    poses.push_back(of_truth ? StampedPose{pair.t_truth, pair.T_world_cam_truth}
-                             : StampedPose{pair.t_estimate, pair.T_world_cam_estimate});
+    poses.push_back({pair.t_truth, of_truth ? pair.T_world_cam_truth : pair.T_world_cam_estimate});
   }
   return poses;
 }

@@ -154,7 +154,7 @@ void WriteCsv(const std::filesystem::path& path, const std::vector<TableRow>& ro
   OutputFile file(path);
   auto& out = file.stream();
   if (!rows.empty()) {
-    for (std::size_t i = 0; i < rows[0].size(); ++i) out << (i ? "," : "") << rows[0][i].first;
+    for (std::size_t i = 0; i < rows[0].size(); ++i) out << (i ? "," : "") << Cell(rows[0][i].first, digits);
     out << '\n';
   }
   for (const auto& row : rows) {
@@ -218,9 +218,12 @@ void WriteLifetimes(const std::filesystem::path& path, const LifetimeStatistics&
 
 std::string FormatSummary(const Evaluation& evaluation) {
   std::string table;
-  table += "path " + Short(evaluation.path_m, 2) + " m, " + Short(ToSeconds(evaluation.to - evaluation.from), 2) +
-           " s, coverage " + Short(100.0 * evaluation.coverage, 1) + " %, gaps " + std::to_string(evaluation.gaps) +
-           ", up " + AxisName(evaluation.up) + "\n";
+  table += "path " + Short(evaluation.path_m, 2) + " m, ";
+  if (evaluation.has_stamps) {
+    table += Short(ToSeconds(evaluation.to - evaluation.from), 2) + " s, coverage " +
+             Short(100.0 * evaluation.coverage, 1) + " %, gaps " + std::to_string(evaluation.gaps) + ", ";
+  }
+  table += "up " + AxisName(evaluation.up) + "\n";
   const std::string& delta = evaluation.alignments.front().rpe.front().delta.name;
   AppendLine(&table, {"alignment", "scale", "poses", "longitud.", "lateral", "planar", "planar", "planar max",
                       "planar end", "APE rmse", "RPE rmse"});
