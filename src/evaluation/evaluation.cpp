@@ -122,6 +122,8 @@ AlignedEvaluation EvaluateAligned(const Comparison& comparison, const Alignment&
   result.ape = Summarize(AbsoluteDifferences(pairs), kAbsoluteRelations);
   const auto estimate = Moved(comparison.estimate, result.similarity, options.project);
   result.rpe = ComputeRelativePoseErrors(pairs, estimate, evaluation.has_stamps, options.rpe);
+  result.segments =
+      EvaluateSegments(MatchPath(pairs), evaluation.up, evaluation.from, evaluation.longest_gap, options.segments);
   return result;
 }
 
@@ -164,6 +166,7 @@ void Register(Parameters& parameters, EvaluationOptions& options) {
                  "how far from the distance a pair may be, as a share of it");
   parameters.Add("evaluation.rpe_pairs_from", &options.rpe.pairs_from, {"estimate", "truth"},
                  "trajectory along which the distance is measured");
+  Register(parameters, options.segments);
 }
 
 Evaluation Evaluate(const Trajectory& truth, const Trajectory& estimate, std::span<const Alignment> alignments,

@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "evo/report/segment_rows.hpp"
+
 namespace evo {
 
 TableRow MetricRow(const std::string& sequence, const std::string& alignment, const std::string& metric,
@@ -41,6 +43,8 @@ std::vector<TableRow> MetricRows(const std::string& sequence, const Evaluation& 
       }
     }
   }
+  const auto segments = SegmentMetricRows(sequence, evaluation);
+  rows.insert(rows.end(), segments.begin(), segments.end());
   return rows;
 }
 

@@ -143,6 +143,9 @@ std::vector<TableRow> SummaryRows(const std::string& sequence, const Evaluation&
   for (const auto& result : evaluation.alignments) {
     rows.push_back(SummaryRow(sequence, evaluation, result));
     AppendRelative(result, rebootstraps, &rows.back());
+    const auto& kitti = result.segments.kitti;
+    rows.back().emplace_back("kitti_translation_percent", kitti.translation_percent.mean);
+    rows.back().emplace_back("kitti_rotation_deg_per_m", kitti.rotation_deg_per_m.mean);
   }
   return rows;
 }

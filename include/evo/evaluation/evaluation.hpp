@@ -13,6 +13,7 @@
 #include "evo/evaluation/driving.hpp"
 #include "evo/evaluation/pose_relation.hpp"
 #include "evo/evaluation/relative_pose_error.hpp"
+#include "evo/evaluation/segments.hpp"
 #include "evo/evaluation/statistics.hpp"
 #include "evo/geometry/trajectory.hpp"
 
@@ -21,6 +22,7 @@ namespace evo {
 struct EvaluationOptions {
   AssociationOptions association;
   RelativePoseErrorOptions rpe;
+  SegmentOptions segments;
   std::string project = "none";    ///< see Project; the estimate after its alignment
   std::string up = "auto";         ///< see UpDirection
   std::string forward = "travel";  ///< see DrivingFrame
@@ -68,6 +70,7 @@ struct AlignedEvaluation {
   ErrorSummary longitudinal, lateral, vertical, planar;
   std::vector<RelationStatistics> ape;  ///< absolute pose errors, kAbsoluteRelations
   std::vector<RelativePoseError> rpe;   ///< one for each delta
+  SegmentEvaluation segments;
 
   const Statistics& Ape(PoseRelation relation) const { return Find(ape, relation); }
 };

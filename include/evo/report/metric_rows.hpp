@@ -15,7 +15,8 @@ TableRow MetricRow(const std::string& sequence, const std::string& alignment, co
                    const std::string& quantity, const std::string& unit, double delta, const std::string& delta_unit,
                    const std::string& pairs, const Statistics& statistics);
 
-/// Every error of every alignment: metric "ape" by relation, then "rpe" by delta and relation.
+/// Every error of every alignment: metric "ape" by relation, then "rpe" by delta and relation;
+/// at the end those of SegmentMetricRows.
 std::vector<TableRow> MetricRows(const std::string& sequence, const Evaluation& evaluation);
 
 }  // namespace evo
