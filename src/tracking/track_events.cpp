@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <future>
+#include <opencv2/core/utility.hpp>
 #include <unordered_map>
 
 #include "evo/core/error.hpp"
@@ -23,6 +24,8 @@ void DropLoneObservations(Tracks* tracks) {
 TrackingResult TrackEvents(EventReader* reader, int width, int height, const TrackerOptions& options, ThreadPool* pool,
                            const std::function<void(double)>& progress,
                            const std::function<void(const TrackingView&)>& observe) {
+  // Its variants for newer processors round differently: the tracks would depend on the machine.
+  cv::setUseOptimized(false);
   EventHistory history(width, height, kSlice);
   FeatureTracker tracker(width, height, options, pool);
   TrackingResult result;

@@ -93,6 +93,15 @@ TEST_F(PipelineTest, SameBytesForAnyNumberOfThreadsAndWithoutTheTruth) {
   }
 }
 
+TEST_F(PipelineTest, SameBytesOnAProcessorWithoutAvx2) {
+  const std::string older =
+      "export OPENCV_CPU_DISABLE=AVX2,FMA3 "
+      "GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA,-AVX2_Usable,-FMA_Usable;";
+  ASSERT_EQ(Run("run " + Blind() + "--to 0.9" + To("this")), 0) << err;
+  ASSERT_EQ(Run("run " + Blind() + "--to 0.9" + To("older"), older), 0) << err;
+  ExpectSameBytes("this", "older", {"tracks.txt", "lifetime.csv", "trajectory.txt", "map.ply"});
+}
+
 TEST_F(PipelineTest, StageByStageGivesWhatRunGives) {
   ASSERT_EQ(Run("run --no-plots --to 0.9 --events " + Quote(Sample()) + To("whole")), 0) << err;
   ASSERT_EQ(Run("track " + Blind() + "--to 0.9" + To("stages")), 0) << err;
