@@ -7,6 +7,7 @@
 #include "app/commands.hpp"
 #include "app/error_place.hpp"
 #include "app/evaluation_results.hpp"
+#include "app/event_drawing.hpp"
 #include "app/interrupt.hpp"
 #include "app/options.hpp"
 #include "app/output_folder.hpp"
@@ -93,7 +94,8 @@ void RunEvaluationStage(const StageContext& context, const GroundTruth& truth, c
     const Evaluation evaluation = context.record->Time(
         "evaluate", [&] { return Evaluate(truth.trajectory, estimate, alignments, interval, options); });
     context.record->Time("write_evaluation", [&] {
-      WriteEvaluationResults(context.options.out, SequenceName(truth.path), evaluation, !context.options.no_plots);
+      WriteEvaluationResults(context.options.out, SequenceName(truth.path), evaluation,
+                             context.record->manifest.rebootstraps, !context.options.no_plots);
     });
     std::cout << FormatSummary(evaluation);
   });
@@ -111,6 +113,7 @@ void RunAll(const RunArguments& arguments, const std::vector<std::string>& comma
   if (truth) {
     RequireOverlap(*truth, recording, FromSeconds(config.evaluation.association.estimate_clock_offset_s));
   }
+  if (arguments.common.force) RemoveDrawings(arguments.stage.out / "images");
   const InterruptGuard guard(arguments.stage.out);
   ThreadPool pool(arguments.common.threads);
   const StageContext context{config, &pool, &record, arguments.stage, !arguments.common.quiet};

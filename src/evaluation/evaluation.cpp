@@ -10,6 +10,8 @@ namespace evo {
 
 namespace {
 
+constexpr double kFirstMeters = 1.0;  // of the way, where errors by distance travelled say nothing yet
+
 std::string Span(TimeNs from, TimeNs to) { return FormatTime(from) + " to " + FormatTime(to) + " s"; }
 
 Trajectory Crop(const Trajectory& trajectory, TimeNs from, TimeNs to) {
@@ -108,7 +110,11 @@ ErrorSummary Summarize(std::span<const PoseError> errors, double DrivingError::*
   const double final = values.back();
   for (double& value : values) value = std::abs(value);
   const Statistics statistics = ComputeStatistics(values);
-  return {statistics.mean, statistics.rmse, statistics.max, final};
+  std::vector<double> shares;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (errors[i].distance >= kFirstMeters) shares.push_back(values[i] / errors[i].distance);
+  }
+  return {statistics.mean, statistics.rmse, statistics.max, final, ComputeStatistics(shares).mean};
 }
 
 }  // namespace

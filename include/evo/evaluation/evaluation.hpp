@@ -47,6 +47,9 @@ struct ErrorSummary {
   double rmse = 0.0;
   double max_abs = 0.0;
   double final = 0.0;  ///< at the last pose, with its sign
+  /// Mean over the poses of absolute error / distance travelled so far. Poses within the first 1 m of the way are left
+  /// out; NaN where there are no others.
+  double mean_over_distance = 0.0;
 };
 
 /// What one alignment gives.
