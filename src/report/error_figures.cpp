@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "evo/report/figures.hpp"
@@ -51,10 +52,13 @@ Figure ErrorFigure(const std::string& name, const Evaluation& evaluation, const 
     }
     vertical.Add(error.driving.vertical);
   }
+  planar.Add(0.0);
+  vertical.Add(0.0);
   planar.Pad();
   vertical.Pad();
 
   const std::string curve = "data" + Every(result.errors.size()) + " using " + (over_time ? "1" : "2");
+  const std::string with = " with " + Curve(result.errors.size());
   std::ostringstream script;
   script << BeginPanels() << "set rmargin at screen 0.88\n"
          << "set xrange " << along << "\n"
@@ -66,15 +70,16 @@ Figure ErrorFigure(const std::string& name, const Evaluation& evaluation, const 
            << " m' at screen 0.985, screen 0.5 center rotate\n";
   }
   script << "data = '" << name << ".dat'\n"
-         << Panel(0.09, 0.62, planar, "error of position (m)", false) << PercentAxis(evaluation, planar) << "plot "
-         << curve << ":5 with lines linewidth 3 linecolor '#000000' title 'planar', \\\n"
-         << "  " << curve << ":3 with lines linewidth 2 linecolor '" << kBlue
+         << Panel(0.115, 0.63, planar, "error of position (m)", false) << PercentAxis(evaluation, planar) << "plot "
+         << curve << ":5" << with << " linewidth 3 linecolor '#000000' title 'planar', \\\n"
+         << "  " << curve << ":3" << with << " linewidth 2 linecolor '" << kBlue
          << "' title 'longitudinal (+ ahead)', \\\n"
-         << "  " << curve << ":4 with lines linewidth 2 dashtype (8,4) linecolor '" << kVermilion
+         << "  " << curve << ":4" << with << " linewidth 2 dashtype (8,4) linecolor '" << kVermilion
          << "' title 'lateral (+ left)'" << ExplainInterruptions(interruptions) << "\n"
-         << Panel(0.66, 0.88, vertical, "vertical (m)", true) << PercentAxis(evaluation, vertical) << "set xlabel '"
+         << "unset label 2\n"
+         << Panel(0.67, 0.88, vertical, "vertical (m)", true) << PercentAxis(evaluation, vertical) << "set xlabel '"
          << (over_time ? "time (s)" : "distance travelled (m)") << "'\n"
-         << "plot " << curve << ":6 with lines linewidth 2 linecolor '" << kPurple << "' notitle\n"
+         << "plot " << curve << ":6" << with << " linewidth 2 linecolor '" << kPurple << "' notitle\n"
          << "unset multiplot\n";
   return {ErrorData(evaluation, result), script.str(), 900, 620};
 }
@@ -85,13 +90,13 @@ Figure ScaleDriftFigure(const std::string& name, const Evaluation& evaluation, c
   data << "# seconds, distance (m), local scale: true length / aligned length; alignment " << result.alignment.name
        << "\n";
   Range ratio{0.99, 1.01};
+  double last = -std::numeric_limits<double>::infinity();
   for (const auto& sample : samples) {
-    if (std::isfinite(sample.ratio)) {
-      AppendRow(data, {sample.seconds, sample.distance, sample.ratio});
-      ratio.Add(sample.ratio);
-    } else {
-      data << '\n';  // a break in the curve
-    }
+    if (!std::isfinite(sample.ratio)) continue;
+    if (sample.seconds - last > ToSeconds(evaluation.longest_gap)) data << '\n';
+    AppendRow(data, {sample.seconds, sample.distance, sample.ratio});
+    ratio.Add(sample.ratio);
+    last = sample.seconds;
   }
   ratio.Pad();
   const auto interruptions = FindInterruptions(evaluation, result, restarts, &PoseError::seconds);
@@ -101,9 +106,9 @@ Figure ScaleDriftFigure(const std::string& name, const Evaluation& evaluation, c
          << "set xlabel 'time (s)'\n"
          << "set ylabel 'true length / estimated length'\n"
          << DrawInterruptions(interruptions) << "plot 1 with lines linewidth 1 linecolor '#808080' notitle, \\\n"
-         << "  '" << name << ".dat'" << Every(samples.size()) << " using 1:3 with lines linewidth 2 linecolor '"
-         << kBlue << "' title 'local scale (" << result.alignment.name << ")'" << ExplainInterruptions(interruptions)
-         << "\n";
+         << "  '" << name << ".dat'" << Every(samples.size()) << " using 1:3 with " << Curve(samples.size())
+         << " linewidth 2 linecolor '" << kBlue << "' title 'local scale (" << result.alignment.name << ")'"
+         << ExplainInterruptions(interruptions) << "\n";
   return {data.str(), script.str()};
 }
 

@@ -10,6 +10,7 @@ namespace evo {
 namespace {
 
 constexpr std::size_t kMostPoints = 5000;
+constexpr std::size_t kFewPoints = 40;
 
 constexpr const char* kGapColor = "#e6e6e6";
 constexpr const char* kRestartStyle = "linewidth 2 dashtype (2,4) linecolor '#707070'";
@@ -36,6 +37,8 @@ void AppendRow(std::ostream& data, std::initializer_list<double> values) {
 std::string Every(std::size_t rows) {
   return rows <= kMostPoints ? "" : " every " + std::to_string((rows + kMostPoints - 1) / kMostPoints);
 }
+
+std::string Curve(std::size_t rows) { return rows < kFewPoints ? "linespoints pointtype 7 pointsize 0.5" : "lines"; }
 
 void Range::Add(double value) {
   low = std::min(low, value);
@@ -71,7 +74,7 @@ double TicStep(const Range& range) {
 std::string BeginPanels() {
   return std::string(kStyle) +
          "set multiplot\n"
-         "set key at screen 0.5, screen 0.99 center top width -5\n"
+         "set key at screen 0.5, screen 0.99 center top width -2 font ',12'\n"
          "set lmargin at screen 0.12\n"
          "set rmargin at screen 0.97\n";
 }

@@ -53,13 +53,13 @@ std::string AlignmentBlock(const Evaluation& evaluation, const AlignedEvaluation
   const double percent = evaluation.path_m > 0.0 ? 100.0 / evaluation.path_m : std::numeric_limits<double>::quiet_NaN();
   return "    \\midrule\n    \\multicolumn{4}{l}{Alignment " + LatexEscape(result.alignment.name) + ", scale " +
          Number(result.similarity.scale, 5) + ", " + std::to_string(result.errors.size()) + " poses} \\\\\n" +
-         ErrorRow("Average error, mean of absolute values (m)", result,
+         ErrorRow("Average error, mean absolute (m)", result,
                   [](const ErrorSummary& error) { return error.mean_abs; }) +
-         ErrorRow("Relative error, largest over path (\\%)", result,
+         ErrorRow("Relative error, largest/path (\\%)", result,
                   [&](const ErrorSummary& error) { return percent * error.max_abs; }) +
-         ErrorRow("Average error over path (\\%)", result,
+         ErrorRow("Average error/path (\\%)", result,
                   [&](const ErrorSummary& error) { return percent * error.mean_abs; }) +
-         ErrorRow("Mean of error over distance travelled (\\%)", result,
+         ErrorRow("Mean of error/distance travelled (\\%)", result,
                   [](const ErrorSummary& error) { return 100.0 * error.mean_over_distance; }) +
          ErrorRow("Root mean square error (m)", result, [](const ErrorSummary& error) { return error.rmse; }) +
          ErrorRow("Largest error (m)", result, [](const ErrorSummary& error) { return error.max_abs; }) +

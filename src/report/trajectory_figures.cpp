@@ -55,9 +55,9 @@ Range AxisRange(const Evaluation& evaluation, const AlignedEvaluation& result, i
 std::string PlotTracks(const Evaluation& evaluation, const AlignedEvaluation& result, const std::string& columns,
                        bool with_titles) {
   const auto title = [&](const std::string& text) { return with_titles ? " title '" + text + "'" : " notitle"; };
-  return "plot data index 0" + Every(evaluation.truth.size()) + " using " + columns + " with " + kTruthStyle +
+  return "plot data index 0" + Every(evaluation.truth.size()) + " using " + columns + " with lines" + kTruthStyle +
          title("ground truth") + ", \\\n  data index 1" + Every(result.aligned.size()) + " using " + columns +
-         " with " + kEstimateStyle + title("estimate (" + result.alignment.name + ")");
+         " with " + Curve(result.aligned.size()) + kEstimateStyle + title("estimate (" + result.alignment.name + ")");
 }
 
 }  // namespace

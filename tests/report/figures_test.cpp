@@ -104,12 +104,13 @@ TEST_F(FiguresTest, AnEstimateThatStopsEarlyShowsIt) {
 
 TEST_F(FiguresTest, ScaleDriftIsBrokenWhereItIsUndetermined) {
   const auto evaluation = SampleEvaluation();
-  const std::vector<ScaleSample> samples{{0.0, 0.0, 1.25}, {0.5, 5.0, NAN}, {1.0, 10.0, 0.75}};
+  const std::vector<ScaleSample> samples{
+      {0.0, 0.0, 1.25}, {0.4, 4.0, NAN}, {0.8, 8.0, NAN}, {1.0, 10.0, 0.75}, {1.5, 15.0, 1.0}};
   const Figure figure = ScaleDriftFigure("s", evaluation, evaluation.alignments[0], samples, {});
   const auto blocks = Blocks(figure.data);
   ASSERT_EQ(blocks.size(), 2u);
   EXPECT_EQ(blocks[0], std::vector<std::string>{"0 0 1.25"});
-  EXPECT_EQ(blocks[1], std::vector<std::string>{"1 10 0.75"});
+  EXPECT_EQ(blocks[1], (std::vector<std::string>{"1 10 0.75", "1.5 15 1"}));
 }
 
 TEST_F(FiguresTest, LiveFeaturesCountEveryFrame) {
@@ -118,6 +119,17 @@ TEST_F(FiguresTest, LiveFeaturesCountEveryFrame) {
   const Figure figure = LiveFeaturesFigure("f", tracks, frames);
   EXPECT_EQ(figure.data, "# seconds since the first frame, live features\n0 2\n1 1\n2 0\n3 1\n");
   EXPECT_NE(figure.script.find("'mean 1.0'"), std::string::npos) << figure.script;
+}
+
+TEST_F(FiguresTest, APoseAloneIsAPoint) {
+  Trajectory truth;
+  for (int i = 0; i <= 60; ++i) truth.push_back({i * (kNsPerSecond / 10), SE3({1, 0, 0, 0}, {0, 0, 1.0 * i})});
+  const auto script = [&](const Trajectory& estimate) {
+    const auto evaluation = Evaluate(truth, estimate, ParseAlignments("none"), {}, EvaluationOptions());
+    return ErrorFigure("e", evaluation, evaluation.alignments[0], ErrorAxis::kTime, {}).script;
+  };
+  EXPECT_NE(script({truth[30]}).find("with linespoints"), std::string::npos);
+  EXPECT_EQ(script(truth).find("with linespoints"), std::string::npos);
 }
 
 TEST_F(FiguresTest, LongCurvesAreThinnedInThePictureOnly) {

@@ -52,10 +52,10 @@ TEST_F(LatexTablesTest, ErrorsAsInThePapersTable3) {
     Item & Longitudinal & Lateral & Planar \\
     \midrule
     \multicolumn{4}{l}{Alignment none, scale 1.00000, 182 poses} \\
-    Average error, mean of absolute values (m) & $1.0104$ & $0.2500$ & $1.0104$ \\
-    Relative error, largest over path (\%) & $2.0000$ & $1.0000$ & $2.0000$ \\
-    Average error over path (\%) & $1.0104$ & $0.2500$ & $1.0104$ \\
-    Mean of error over distance travelled (\%) & $2.0000$ & $0.4000$ & $2.0000$ \\
+    Average error, mean absolute (m) & $1.0104$ & $0.2500$ & $1.0104$ \\
+    Relative error, largest/path (\%) & $2.0000$ & $1.0000$ & $2.0000$ \\
+    Average error/path (\%) & $1.0104$ & $0.2500$ & $1.0104$ \\
+    Mean of error/distance travelled (\%) & $2.0000$ & $0.4000$ & $2.0000$ \\
     Root mean square error (m) & $1.1795$ & $0.5000$ & $1.1795$ \\
     Largest error (m) & $2.0000$ & $1.0000$ & $2.0000$ \\
     Final error, signed (m) & $-2.0000$ & $0.0000$ & $2.0000$ \\
@@ -76,8 +76,8 @@ TEST_F(LatexTablesTest, WhatIsNotDeterminedIsADash) {
   for (int i = 0; i < 5; ++i) still.push_back({i * kNsPerSecond / 10, SE3()});
   const std::string table =
       ErrorTable("still", Evaluate(still, still, ParseAlignments("none"), {}, EvaluationOptions()));
-  EXPECT_NE(table.find("Relative error, largest over path (\\%) & -- & -- & -- \\\\"), std::string::npos) << table;
-  EXPECT_NE(table.find("Mean of error over distance travelled (\\%) & -- & -- & -- \\\\"), std::string::npos) << table;
+  EXPECT_NE(table.find("Relative error, largest/path (\\%) & -- & -- & -- \\\\"), std::string::npos) << table;
+  EXPECT_NE(table.find("Mean of error/distance travelled (\\%) & -- & -- & -- \\\\"), std::string::npos) << table;
   EXPECT_EQ(table.find("nan"), std::string::npos) << table;
   const std::string lifetimes = LifetimeTable("none", {});
   EXPECT_NE(lifetimes.find("0 tracks in 0 event frames at --\\,Hz"), std::string::npos) << lifetimes;
