@@ -122,7 +122,7 @@ void RunAll(const RunArguments& arguments, const std::vector<std::string>& comma
   std::cout << FormatTracking(tracking) << std::flush;
   const OdometryResult odometry =
       RunOdometryStage(context, tracking.result.tracks, context.options.out / "tracks.txt", recording.camera);
-  std::cout << FormatOdometry(odometry) << FormatSpeed(tracking.result, record.manifest, pool.size()) << std::flush;
+  std::cout << FormatOdometry(odometry) << FormatSpeed(record.manifest, pool.size()) << std::flush;
   if (truth) {
     RunEvaluationStage(context, *truth, odometry.trajectory, tracking.result.frames, alignments,
                        arguments.align.empty());
