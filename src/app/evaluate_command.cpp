@@ -1,5 +1,8 @@
 #include <iostream>
 #include <memory>
+#include <optional>
+#include <set>
+#include <utility>
 
 #include "app/commands.hpp"
 #include "app/config.hpp"
@@ -10,6 +13,7 @@
 #include "app/output_folder.hpp"
 #include "app/run_record.hpp"
 #include "evo/core/error.hpp"
+#include "evo/io/file_kind.hpp"
 #include "evo/report/tables.hpp"
 
 namespace evo::app {
@@ -22,7 +26,13 @@ struct EvaluateArguments {
   std::string ground_truth;
   std::string align = "origin-scale,sim3";
   std::string association;
+  std::optional<double> max_difference_s;
+  std::optional<double> time_offset_s;
+  std::string rpe;
+  std::string rpe_pairs;
+  std::string project;
   std::string up;
+  std::string forward;
   std::string from;
   std::string to;
   std::string sequence;
@@ -45,11 +55,54 @@ EvaluationInterval ParseInterval(const EvaluateArguments& arguments) {
   return interval;
 }
 
+/// The options that were given win over the configuration.
+void Override(const EvaluateArguments& arguments, EvaluationOptions* options) {
+  const auto set = [](const auto& given, auto* option) {
+    if (!given.empty()) *option = given;
+  };
+  set(arguments.association, &options->association.association);
+  set(arguments.rpe, &options->rpe.deltas);
+  set(arguments.rpe_pairs, &options->rpe.pairs);
+  set(arguments.project, &options->project);
+  set(arguments.up, &options->up);
+  set(arguments.forward, &options->forward);
+  options->rpe.required = !arguments.rpe.empty();
+  if (arguments.max_difference_s) options->association.max_difference_s = *arguments.max_difference_s;
+  if (arguments.time_offset_s) options->association.estimate_clock_offset_s = *arguments.time_offset_s;
+  ParseDeltas(options->rpe.deltas);  // refuses a wrong --rpe before anything is read
+}
+
+struct Inputs {
+  Trajectory estimate;
+  Trajectory truth;
+};
+
+/// Two files without stamps are compared pose by pose; a file with stamps and one without have nothing in common.
+Inputs ReadInputs(const EvaluateArguments& arguments, AssociationOptions* association) {
+  const bool estimate_is_kitti = DetectKind(arguments.estimate) == FileKind::kKittiPoses;
+  const bool truth_is_kitti = DetectKind(arguments.ground_truth) == FileKind::kKittiPoses;
+  if (estimate_is_kitti != truth_is_kitti) {
+    throw Error(ErrorKind::kInput, (estimate_is_kitti ? arguments.estimate : arguments.ground_truth) +
+                                       ": its poses have no stamps, those of the other file have; give two files with "
+                                       "stamps or two without");
+  }
+  if (!estimate_is_kitti) {
+    return {ReadTum(arguments.estimate), ReadGroundTruth(arguments.ground_truth, arguments.common.Source())};
+  }
+  if (!arguments.association.empty() || arguments.max_difference_s || arguments.time_offset_s) {
+    throw Error(ErrorKind::kUsage, arguments.estimate +
+                                       ": its poses have no stamps and are compared one by one; leave out "
+                                       "--association, --max-difference and --time-offset");
+  }
+  *association = {};
+  association->association = "index";
+  return {ReadKitti(arguments.estimate), ReadKitti(arguments.ground_truth)};
+}
+
 void RunEvaluate(const EvaluateArguments& arguments, const std::vector<std::string>& command_line) {
   Config config;
   arguments.common.Apply(&config);
-  if (!arguments.association.empty()) config.evaluation.association.association = arguments.association;
-  if (!arguments.up.empty()) config.evaluation.up = arguments.up;
+  Override(arguments, &config.evaluation);
   const auto alignments = ParseAlignments(arguments.align);
   const auto interval = ParseInterval(arguments);
 
@@ -61,15 +114,11 @@ void RunEvaluate(const EvaluateArguments& arguments, const std::vector<std::stri
   record.AddInput("estimate", arguments.estimate);
   record.AddInput("ground_truth", arguments.ground_truth);
 
-  Trajectory estimate;
-  Trajectory truth;
-  record.Time("read", [&] {
-    estimate = ReadTum(arguments.estimate);
-    truth = ReadGroundTruth(arguments.ground_truth, arguments.common.Source());
-  });
+  EvaluationOptions options = config.evaluation;
+  const auto [estimate, truth] = record.Time("read", [&] { return ReadInputs(arguments, &options.association); });
   const auto evaluation = record.Time("evaluate", [&] {
     return NamingPlace(arguments.estimate + " against " + arguments.ground_truth,
-                       [&] { return Evaluate(truth, estimate, alignments, interval, config.evaluation); });
+                       [&, &e = estimate, &t = truth] { return Evaluate(t, e, alignments, interval, options); });
   });
   const std::string sequence = arguments.sequence.empty() ? SequenceName(arguments.ground_truth) : arguments.sequence;
   record.Time("write", [&] { WriteEvaluationResults(arguments.out, sequence, evaluation, {}, !arguments.no_plots); });
@@ -81,24 +130,57 @@ void RunEvaluate(const EvaluateArguments& arguments, const std::vector<std::stri
   std::cout << FormatSummary(evaluation);
 }
 
+void AddComparisonOptions(CLI::App& command, EvaluateArguments& arguments) {
+  const auto add_choice = [&](const char* name, std::string& value, std::set<std::string> choices, const char* type,
+                              const char* help) {
+    command.add_option(name, value, help)->check(CLI::IsMember(std::move(choices)).description(""))->type_name(type);
+  };
+  add_choice(
+      "--association", arguments.association, {"interpolate", "nearest", "unique", "nearest-truth"},
+      "interpolate|nearest|unique|nearest-truth",
+      "how poses find each other: interpolate the truth (default), evo's nearest, TUM's unique (evaluate_ate) or "
+      "nearest-truth (evaluate_rpe)");
+  command
+      .add_option("--max-difference", arguments.max_difference_s,
+                  "stamps farther apart form no pair, unless interpolated; default: 0.01 nearest, 0.02 unique, twice "
+                  "the truth's interval nearest-truth")
+      ->check(CLI::Range(0.0, 1e3).description(""))
+      ->type_name("S");
+  command
+      .add_option("--time-offset", arguments.time_offset_s, "added to the estimate's stamps; write --time-offset=-0.1")
+      ->check(CLI::Range(-1e9, 1e9).description(""))
+      ->type_name("S");
+  command
+      .add_option(
+          "--rpe", arguments.rpe,
+          "distances of relative errors: frames, s, m, deg or rad, for example 1f,0.5s,10m,5deg,0.1rad; default: "
+          "1f,1s,10m")
+      ->type_name("LIST");
+  add_choice("--rpe-pairs", arguments.rpe_pairs, {"consecutive", "all", "closest"}, "consecutive|all|closest",
+             "pairs end to end (default), from every pose, or as TUM's evaluate_rpe takes them");
+  add_choice("--project", arguments.project, {"none", "xy", "xz", "yz"}, "none|xy|xz|yz",
+             "plane of the truth's world to confine the errors to");
+  add_choice("--up", arguments.up, {"auto", "x", "y", "z", "-x", "-y", "-z"}, "auto|[-]x|y|z",
+             "axis of the truth's world that points up; write --up=-y");
+  add_choice("--forward", arguments.forward, {"travel", "body"}, "travel|body",
+             "longitudinal is along the direction of travel (default) or the true camera's axis");
+}
+
 }  // namespace
 
 Command AddEvaluateCommand(CLI::App& app) {
   auto arguments = std::make_shared<EvaluateArguments>();
   auto* const parser = app.add_subcommand("evaluate", "Compare a trajectory with the ground truth");
-  parser->add_option("--estimate", arguments->estimate, "estimated trajectory, TUM text")
+  parser->add_option("--estimate", arguments->estimate, "estimated trajectory, TUM text or KITTI poses")
       ->required()
       ->type_name("FILE");
-  parser->add_option("--ground-truth", arguments->ground_truth, "MVSEC _gt.hdf5, UZH groundtruth.txt or TUM text")
+  parser
+      ->add_option("--ground-truth", arguments->ground_truth,
+                   "MVSEC _gt.hdf5, UZH groundtruth.txt, TUM text or KITTI poses")
       ->required()
       ->type_name("FILE");
   AddAlignmentOption(*parser, arguments->align);
-  parser->add_option("--association", arguments->association, "interpolate the truth (default) or take evo's nearest")
-      ->check(CLI::IsMember({"interpolate", "nearest"}).description(""))
-      ->type_name("interpolate|nearest");
-  parser->add_option("--up", arguments->up, "axis of the truth's world that points up; write --up=-y")
-      ->check(CLI::IsMember({"auto", "x", "y", "z", "-x", "-y", "-z"}).description(""))
-      ->type_name("auto|[-]x|y|z");
+  AddComparisonOptions(*parser, *arguments);
   parser->add_option("--from-stamp", arguments->from, "judge only from this stamp of the ground truth on")
       ->type_name("S");
   parser->add_option("--to-stamp", arguments->to, "judge only up to this stamp")->type_name("S");

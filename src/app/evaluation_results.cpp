@@ -1,10 +1,13 @@
 #include "app/evaluation_results.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 
 #include "evo/report/figures.hpp"
 #include "evo/report/gnuplot.hpp"
 #include "evo/report/latex_tables.hpp"
+#include "evo/report/metric_rows.hpp"
 #include "evo/report/tables.hpp"
 
 namespace evo::app {
@@ -19,8 +22,20 @@ std::string Suffix(std::size_t index, const Alignment& alignment) {
   return suffix;
 }
 
+void WarnOfWhatIsMissing(const Evaluation& evaluation) {
+  for (const auto& reason : evaluation.left_out) spdlog::warn("left out of the report: {}", reason);
+  if (evaluation.alignments.empty()) return;
+  for (const auto& rpe : evaluation.alignments.front().rpe) {
+    if (rpe.relations.front().statistics.count > 0) continue;
+    spdlog::warn("no relative errors over {} ({} pairs): {}", rpe.delta.name, rpe.pairs,
+                 evaluation.has_stamps || rpe.delta.unit != DeltaUnit::kSeconds ? "no two poses are so far apart"
+                                                                                : "the files have no stamps");
+  }
+}
+
 void DrawFigures(const std::filesystem::path& folder, const std::string& suffix, const Evaluation& evaluation,
-                 const AlignedEvaluation& result, std::span<const TimeNs> restarts) {
+                 const AlignedEvaluation& result, const Restarts& known_restarts) {
+  const auto restarts = known_restarts.value_or(std::vector<TimeNs>());
   Gnuplot gnuplot(folder);
   const auto draw = [&](const std::string& name, const auto& figure) {
     gnuplot.Draw(name + suffix, figure(name + suffix));
@@ -31,26 +46,31 @@ void DrawFigures(const std::filesystem::path& folder, const std::string& suffix,
        [&](const std::string& name) { return ErrorFigure(name, evaluation, result, ErrorAxis::kTime, restarts); });
   draw("errors_distance",
        [&](const std::string& name) { return ErrorFigure(name, evaluation, result, ErrorAxis::kDistance, restarts); });
+  draw("scale_drift", [&](const std::string& name) { return ScaleDriftFigure(name, evaluation, result, restarts); });
 }
 
 }  // namespace
 
 std::vector<std::string> EvaluationResultNames(std::span<const Alignment> alignments) {
-  std::vector<std::string> names{"summary.csv", "summary.json", "tables/errors.tex"};
+  std::vector<std::string> names{"summary.csv", "summary.json", "metrics.csv", "tables/errors.tex"};
   for (std::size_t i = 0; i < alignments.size(); ++i) names.push_back("errors" + Suffix(i, alignments[i]) + ".csv");
   return names;
 }
 
 void WriteEvaluationResults(const std::filesystem::path& folder, const std::string& sequence,
-                            const Evaluation& evaluation, std::span<const TimeNs> restarts, bool with_plots) {
-  const auto rows = SummaryRows(sequence, evaluation);
+                            const Evaluation& evaluation, bool with_plots, const Restarts& restarts) {
+  WarnOfWhatIsMissing(evaluation);
+  if (evaluation.alignments.empty()) return;
+  const auto rebootstraps = restarts ? std::optional(static_cast<std::int64_t>(restarts->size())) : std::nullopt;
+  const auto rows = SummaryRows(sequence, evaluation, rebootstraps);
   WriteCsv(folder / "summary.csv", rows);
   WriteJson(folder / "summary.json", rows);
+  WriteCsv(folder / "metrics.csv", MetricRows(sequence, evaluation), Digits::kAll);
   WriteLatex(folder / "tables" / "errors.tex", ErrorTable(sequence, evaluation));
   for (std::size_t i = 0; i < evaluation.alignments.size(); ++i) {
     const auto& result = evaluation.alignments[i];
     const std::string suffix = Suffix(i, result.alignment);
-    WriteErrors(folder / ("errors" + suffix + ".csv"), result.errors);
+    WriteErrors(folder / ("errors" + suffix + ".csv"), result.errors, evaluation.has_stamps);
     if (with_plots) DrawFigures(folder / "plots", suffix, evaluation, result, restarts);
   }
 }

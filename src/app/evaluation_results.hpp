@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,14 +12,17 @@
 namespace evo::app {
 
 /// The files that WriteEvaluationResults makes, relative to the output folder, plots left out: summary.csv,
-/// summary.json, tables/errors.tex, errors.csv for the first alignment and errors_NAME.csv for each further one
-/// ("first:5" becomes first-5).
+/// summary.json, metrics.csv, tables/errors.tex, errors.csv for the first alignment and errors_NAME.csv for each
+/// further one ("first:5" becomes first-5).
 std::vector<std::string> EvaluationResultNames(std::span<const Alignment> alignments);
 
-/// Writes them and, if wanted, the plots trajectory, axes, errors and errors_distance (_NAME) as SVG and PDF.
-/// `restarts` as in the figures.
+/// Stamps, as written in the estimate, at which the odometry started anew; empty if that is not known.
+using Restarts = std::optional<std::vector<TimeNs>>;
+
+/// Logs what the evaluation lacks, writes the files unless it lacks every alignment and, if wanted, the plots
+/// trajectory, axes, errors, errors_distance and scale_drift (_NAME) as SVG and PDF.
 void WriteEvaluationResults(const std::filesystem::path& folder, const std::string& sequence,
-                            const Evaluation& evaluation, std::span<const TimeNs> restarts, bool with_plots);
+                            const Evaluation& evaluation, bool with_plots, const Restarts& restarts = std::nullopt);
 
 /// A name for the sequence that a file of events or ground truth belongs to: "drive" for drive_data.hdf5 and
 /// drive_gt.hdf5, the folder's name for events.txt and groundtruth.txt.

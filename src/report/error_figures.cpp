@@ -78,17 +78,17 @@ Figure ErrorFigure(const std::string& name, const Evaluation& evaluation, const 
          << "' title 'lateral (+ left)'" << ExplainInterruptions(interruptions) << "\n"
          << "unset label 2\n"
          << Panel(0.67, 0.88, vertical, "vertical (m)", true) << PercentAxis(evaluation, vertical) << "set xlabel '"
-         << (over_time ? "time (s)" : "distance travelled (m)") << "'\n"
+         << (over_time ? TimeLabel(evaluation) : "distance travelled (m)") << "'\n"
          << "plot " << curve << ":6" << with << " linewidth 2 linecolor '" << kPurple << "' notitle\n"
          << "unset multiplot\n";
   return {ErrorData(evaluation, result), script.str(), 900, 620};
 }
 
 Figure ScaleDriftFigure(const std::string& name, const Evaluation& evaluation, const AlignedEvaluation& result,
-                        std::span<const ScaleSample> samples, std::span<const TimeNs> restarts) {
+                        std::span<const TimeNs> restarts) {
+  const auto& samples = result.segments.local_scale;
   std::ostringstream data;
-  data << "# seconds, distance (m), local scale: true length / aligned length; alignment " << result.alignment.name
-       << "\n";
+  data << "# seconds, distance (m), local scale: true size / aligned size; alignment " << result.alignment.name << "\n";
   Range ratio{0.99, 1.01};
   double last = -std::numeric_limits<double>::infinity();
   for (const auto& sample : samples) {
@@ -103,8 +103,8 @@ Figure ScaleDriftFigure(const std::string& name, const Evaluation& evaluation, c
   std::ostringstream script;
   script << kStyle << "set xrange " << TimeRange(evaluation) << "\n"
          << "set yrange " << ratio << "\n"
-         << "set xlabel 'time (s)'\n"
-         << "set ylabel 'true length / estimated length'\n"
+         << "set xlabel '" << TimeLabel(evaluation) << "'\n"
+         << "set ylabel 'true size / estimated size'\n"
          << DrawInterruptions(interruptions) << "plot 1 with lines linewidth 1 linecolor '#808080' notitle, \\\n"
          << "  '" << name << ".dat'" << Every(samples.size()) << " using 1:3 with " << Curve(samples.size())
          << " linewidth 2 linecolor '" << kBlue << "' title 'local scale (" << result.alignment.name << ")'"

@@ -145,4 +145,6 @@ Range TimeRange(const Evaluation& evaluation) {
   return time;
 }
 
+std::string TimeLabel(const Evaluation& evaluation) { return evaluation.has_stamps ? "time (s)" : "frame"; }
+
 }  // namespace evo

@@ -81,5 +81,7 @@ std::string ExplainInterruptions(const Interruptions& interruptions);
 
 /// The whole interval that was judged, in seconds.
 Range TimeRange(const Evaluation& evaluation);
+/// What to write below such an axis: where there are no stamps, "seconds" are numbers of frames.
+std::string TimeLabel(const Evaluation& evaluation);
 
 }  // namespace evo

@@ -102,7 +102,7 @@ Figure AxesFigure(const std::string& name, const Evaluation& evaluation, const A
     meters.Pad();
     const double top = 0.08 + 0.275 * axis;
     script << Panel(top, top + 0.25, meters, std::string(1, "xyz"[axis]) + " (m)", axis == 2);
-    if (axis == 2) script << "set xlabel 'time (s)'\n";
+    if (axis == 2) script << "set xlabel '" << TimeLabel(evaluation) << "'\n";
     script << PlotTracks(evaluation, result, "1:" + std::to_string(axis + 2), axis == 0)
            << (axis == 0 ? ExplainInterruptions(interruptions) : "") << "\n";
   }

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 std::vector<std::string> SplitAtCommas(const std::string& line) {
   std::vector<std::string> cells;
-  std::istringstream stream(line);
+  std::istringstream stream(line + ',');  // the last cell may be empty
   for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
   return cells;
 }

@@ -38,7 +38,10 @@ Trajectory Moved(Trajectory trajectory, const Similarity& similarity) {
 }
 
 double Rmse(const Trajectory& truth, const Trajectory& estimate, const char* alignment) {
-  return Evaluate(truth, estimate, std::vector{ParseAlignment(alignment)}, {}, {}).alignments.front().ape.rmse;
+  return Evaluate(truth, estimate, std::vector{ParseAlignment(alignment)}, {}, {})
+      .alignments.front()
+      .Ape(PoseRelation::kTranslation)
+      .rmse;
 }
 
 const Similarity kRigid{1.0, SE3(so3::Exp({0.4, -1.2, 2.0}), {100.0, -20.0, 3.0})};
@@ -49,7 +52,7 @@ TEST(Alignment, FindsTheMotionThatWasApplied) {
   for (const char* name : {"sim3", "origin-scale", "first:2.5"}) {
     EXPECT_LT(Rmse(truth, Moved(truth, kSimilar), name), 1e-9) << name;
     const auto pairs = Associate(truth, Moved(truth, kSimilar), {});
-    EXPECT_NEAR(Align(pairs, ParseAlignment(name)).scale, 1.0 / 0.3, 1e-9) << name;
+    EXPECT_NEAR(Align(pairs, ParseAlignment(name), Eigen::Vector3d::UnitZ()).scale, 1.0 / 0.3, 1e-9) << name;
   }
   for (const char* name : {"se3", "origin"}) EXPECT_LT(Rmse(truth, Moved(truth, kRigid), name), 1e-9) << name;
   EXPECT_GT(Rmse(truth, Moved(truth, kRigid), "none"), 1.0);
@@ -94,7 +97,9 @@ TEST(Alignment, ReflectionIsNeverUsed) {
     pose.T_world_cam = SE3(pose.T_world_cam.rotation(), {p.x(), -p.y(), p.z()});
   }
   const auto pairs = Associate(truth, mirrored, {});
-  EXPECT_NEAR(Align(pairs, ParseAlignment("se3")).T_truth_estimate.RotationMatrix().determinant(), 1.0, 1e-12);
+  EXPECT_NEAR(
+      Align(pairs, ParseAlignment("se3"), Eigen::Vector3d::UnitZ()).T_truth_estimate.RotationMatrix().determinant(),
+      1.0, 1e-12);
   EXPECT_GT(Rmse(truth, mirrored, "se3"), 0.1);
 }
 
@@ -133,8 +138,8 @@ TEST(Alignment, NoOverlapIsNothingToDo) {
 TEST(Alignment, ReadsNames) {
   const auto alignments = ParseAlignments("none,first:2.5,sim3,none");
   ASSERT_EQ(alignments.size(), 3u);
-  EXPECT_EQ(alignments[1].kind, Alignment::Kind::kFirst);
-  EXPECT_DOUBLE_EQ(alignments[1].seconds, 2.5);
+  EXPECT_EQ(alignments[1].method, Alignment::Method::kSim3);
+  EXPECT_EQ(alignments[1].first_seconds, 2.5);
   for (const char* text : {"", "umeyama", "first:", "first:0", "first:-1", "first:nan", "first:2s", "sim3,,se3"}) {
     EXPECT_THROW(ParseAlignments(text), Error) << text;
   }

@@ -16,7 +16,7 @@ using TablesTest = ReportTest;
 
 TEST_F(TablesTest, ErrorsHaveARowAPose) {
   const auto evaluation = SampleEvaluation();
-  WriteErrors(folder / "errors.csv", evaluation.alignments[0].errors);
+  WriteErrors(folder / "errors.csv", evaluation.alignments[0].errors, true);
   std::istringstream lines(ReadFile(folder / "errors.csv"));
   std::string line;
   std::getline(lines, line);
@@ -43,7 +43,10 @@ TEST_F(TablesTest, SummaryColumnsStayWhatTheyAre) {
       "rmse_vertical_percent,rmse_planar_percent,max_longitudinal_percent,max_lateral_percent,max_vertical_percent,"
       "max_planar_percent,final_longitudinal_percent,final_lateral_percent,final_vertical_percent,"
       "final_planar_percent,ape_rmse_m,ape_mean_m,ape_median_m,ape_std_m,ape_min_m,ape_max_m,ape_sse_m2,"
-      "ape_rotation_rmse_deg,ape_rotation_mean_deg,ape_rotation_max_deg\n"))
+      "ape_rotation_rmse_deg,ape_rotation_mean_deg,ape_rotation_max_deg,rpe_delta,rpe_translation_rmse_m,"
+      "rpe_rotation_rmse_deg,mean_abs_longitudinal_over_distance_percent,mean_abs_lateral_over_distance_percent,"
+      "mean_abs_vertical_over_distance_percent,mean_planar_over_distance_percent,rebootstraps,"
+      "kitti_translation_percent,kitti_rotation_deg_per_m\n"))
       << csv;
   EXPECT_NE(csv.find("\n\"drive, \"\"day\"\"\",none,1.000000000,182,0.900000000,1,100.000000000,"), std::string::npos)
       << csv;
@@ -143,7 +146,7 @@ TEST_F(TablesTest, ManifestHoldsWhatWasRun) {
 TEST_F(TablesTest, CannotWriteIsAnOutputError) {
   std::ofstream(folder / "file") << "x";
   try {
-    WriteErrors(folder / "file" / "errors.csv", {});
+    WriteErrors(folder / "file" / "errors.csv", {}, true);
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::kOutput);

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "evo/evaluation/evaluation.hpp"
-#include "evo/evaluation/scale_drift.hpp"
 #include "evo/report/gnuplot.hpp"
 #include "evo/tracking/lifetime.hpp"
 
@@ -31,7 +30,7 @@ Figure ErrorFigure(const std::string& name, const Evaluation& evaluation, const 
 
 /// Local scale over time: 1 where the estimate has the scale of the alignment, more where it is too short.
 Figure ScaleDriftFigure(const std::string& name, const Evaluation& evaluation, const AlignedEvaluation& result,
-                        std::span<const ScaleSample> samples, std::span<const TimeNs> restarts);
+                        std::span<const TimeNs> restarts);
 
 /// Distribution of track lifetimes in frames with their mean.
 Figure LifetimeFigure(const std::string& name, const LifetimeStatistics& statistics);
