@@ -121,7 +121,7 @@ void RunEvaluate(const EvaluateArguments& arguments, const std::vector<std::stri
                        [&, &e = estimate, &t = truth] { return Evaluate(t, e, alignments, interval, options); });
   });
   const std::string sequence = arguments.sequence.empty() ? SequenceName(arguments.ground_truth) : arguments.sequence;
-  record.Time("write", [&] { WriteEvaluationResults(arguments.out, sequence, evaluation, {}, !arguments.no_plots); });
+  record.Time("write", [&] { WriteEvaluationResults(arguments.out, sequence, evaluation, !arguments.no_plots); });
 
   record.AddCount("estimated_poses", estimate.size());
   record.AddCount("true_poses", truth.size());

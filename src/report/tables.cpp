@@ -154,7 +154,7 @@ void WriteCsv(const std::filesystem::path& path, const std::vector<TableRow>& ro
   OutputFile file(path);
   auto& out = file.stream();
   if (!rows.empty()) {
-    for (std::size_t i = 0; i < rows[0].size(); ++i) out << (i ? "," : "") << Cell(rows[0][i].first);
+    for (std::size_t i = 0; i < rows[0].size(); ++i) out << (i ? "," : "") << Cell(rows[0][i].first, digits);
     out << '\n';
   }
   for (const auto& row : rows) {
