@@ -1,3 +1,4 @@
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -55,6 +56,16 @@ EvaluationInterval ParseInterval(const EvaluateArguments& arguments) {
   return interval;
 }
 
+/// NaN is in no range.
+void SetSeconds(const std::string& name, std::optional<double> given, double lowest, double highest, double* option) {
+  if (!given) return;
+  if (!(*given >= lowest && *given <= highest)) {
+    throw Error(ErrorKind::kUsage, name + " must be a number of seconds from " + std::to_string(std::lround(lowest)) +
+                                       " to " + std::to_string(std::lround(highest)));
+  }
+  *option = *given;
+}
+
 /// The options that were given win over the configuration.
 void Override(const EvaluateArguments& arguments, EvaluationOptions* options) {
   const auto set = [](const auto& given, auto* option) {
@@ -67,8 +78,8 @@ void Override(const EvaluateArguments& arguments, EvaluationOptions* options) {
   set(arguments.up, &options->up);
   set(arguments.forward, &options->forward);
   options->rpe.required = !arguments.rpe.empty();
-  if (arguments.max_difference_s) options->association.max_difference_s = *arguments.max_difference_s;
-  if (arguments.time_offset_s) options->association.estimate_clock_offset_s = *arguments.time_offset_s;
+  SetSeconds("--max-difference", arguments.max_difference_s, 0.0, 1e3, &options->association.max_difference_s);
+  SetSeconds("--time-offset", arguments.time_offset_s, -1e9, 1e9, &options->association.estimate_clock_offset_s);
   ParseDeltas(options->rpe.deltas);  // refuses a wrong --rpe before anything is read
 }
 
@@ -144,11 +155,9 @@ void AddComparisonOptions(CLI::App& command, EvaluateArguments& arguments) {
       .add_option("--max-difference", arguments.max_difference_s,
                   "stamps farther apart form no pair, unless interpolated; default: 0.01 nearest, 0.02 unique, twice "
                   "the truth's interval nearest-truth")
-      ->check(CLI::Range(0.0, 1e3).description(""))
       ->type_name("S");
   command
       .add_option("--time-offset", arguments.time_offset_s, "added to the estimate's stamps; write --time-offset=-0.1")
-      ->check(CLI::Range(-1e9, 1e9).description(""))
       ->type_name("S");
   command
       .add_option(

@@ -28,8 +28,9 @@ void WarnOfWhatIsMissing(const Evaluation& evaluation) {
   for (const auto& rpe : evaluation.alignments.front().rpe) {
     if (rpe.relations.front().statistics.count > 0) continue;
     spdlog::warn("no relative errors over {} ({} pairs): {}", rpe.delta.name, rpe.pairs,
-                 evaluation.has_stamps || rpe.delta.unit != DeltaUnit::kSeconds ? "no two poses are so far apart"
-                                                                                : "the files have no stamps");
+                 evaluation.has_stamps || rpe.delta.unit != DeltaUnit::kSeconds
+                     ? "the way is too short, or the tolerance too small"
+                     : "the files have no stamps");
   }
 }
 

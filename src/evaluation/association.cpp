@@ -43,49 +43,69 @@ std::vector<PosePair> PairWithNearest(const Trajectory& truth, const Trajectory&
   return pairs;
 }
 
-/// Merges the stamps of both into one row. The two nearest stamps of different kind are always neighbours in it, and
-/// taking them out makes their neighbours neighbours: no other candidates need to be looked at.
-std::vector<PosePair> PairUniquely(const Trajectory& truth, const Trajectory& estimate, TimeNs offset,
-                                   TimeNs max_difference) {
+/// The stamps of both trajectories in one row. The two nearest stamps of different kind are always neighbours in it,
+/// and taking them out makes their neighbours neighbours: no other candidates need to be looked at.
+class StampRow {
+ public:
+  StampRow(const Trajectory& truth, const Trajectory& estimate, TimeNs offset) {
+    for (const auto& pose : truth) row_.push_back({pose.t, true, &pose, 0, 0});
+    for (const auto& pose : estimate) row_.push_back({pose.t + offset, false, &pose, 0, 0});
+    std::ranges::sort(row_.begin() + 1, row_.end(), {}, [](const Entry& e) { return std::pair(e.t, !e.is_truth); });
+    row_.push_back({});
+    for (std::size_t i = 0; i < row_.size(); ++i) {
+      row_[i].before = i - 1;  // of the first end never asked for
+      row_[i].after = i + 1;
+    }
+  }
+
+  /// Takes the nearest two, then the nearest of the rest, and so on.
+  std::vector<PosePair> TakePairs(TimeNs max_difference) {
+    std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> candidates;
+    const auto propose = [&](std::size_t i, std::size_t j) {
+      if (!row_[i].pose || !row_[j].pose || row_[i].is_truth == row_[j].is_truth) return;
+      const auto [truth, estimate] = row_[i].is_truth ? std::pair(i, j) : std::pair(j, i);
+      const TimeNs difference = row_[j].t - row_[i].t;
+      if (difference <= max_difference) candidates.emplace(difference, row_[truth].t, row_[estimate].t, i, j);
+    };
+    for (std::size_t i = 1; i + 1 < row_.size(); ++i) propose(i, i + 1);
+    std::vector<PosePair> pairs;
+    while (!candidates.empty()) {
+      const auto [difference, t_truth, t_estimate, i, j] = candidates.top();
+      candidates.pop();
+      if (row_[i].after != j || row_[j].before != i) continue;  // one is taken: no neighbours any more
+      pairs.push_back(row_[i].is_truth ? Pair(*row_[i].pose, *row_[j].pose) : Pair(*row_[j].pose, *row_[i].pose));
+      const auto [before, after] = Remove(i, j);
+      propose(before, after);
+    }
+    return pairs;
+  }
+
+ private:
   struct Entry {
     TimeNs t = 0;  // in the clock of the truth
     bool is_truth = false;
-    const StampedPose* pose = nullptr;
+    const StampedPose* pose = nullptr;  // none at either end of the row
     std::size_t before = 0;
     std::size_t after = 0;
-    bool taken = false;
   };
-  std::vector<Entry> row{{}};  // entries 0 and the last are the ends
-  for (const auto& pose : truth) row.push_back({pose.t, true, &pose});
-  for (const auto& pose : estimate) row.push_back({pose.t + offset, false, &pose});
-  std::ranges::sort(row.begin() + 1, row.end(), {}, [](const Entry& e) { return std::pair(e.t, !e.is_truth); });
-  row.push_back({});
-  for (std::size_t i = 1; i + 1 < row.size(); ++i) {
-    row[i].before = i - 1;
-    row[i].after = i + 1;
-  }
-  // Difference, then the truth's stamp, then the estimate's; then the entries.
+  /// Difference, then the truth's stamp, then the estimate's; then the two entries.
   using Candidate = std::tuple<TimeNs, TimeNs, TimeNs, std::size_t, std::size_t>;
-  std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> candidates;
-  const auto propose = [&](std::size_t i, std::size_t j) {
-    if (!row[i].pose || !row[j].pose || row[i].is_truth == row[j].is_truth) return;
-    const auto [of_truth, of_estimate] = row[i].is_truth ? std::pair(i, j) : std::pair(j, i);
-    const TimeNs difference = std::abs(row[i].t - row[j].t);
-    if (difference <= max_difference) candidates.emplace(difference, row[of_truth].t, row[of_estimate].t, i, j);
-  };
-  for (std::size_t i = 1; i + 1 < row.size(); ++i) propose(i, i + 1);
-  std::vector<PosePair> pairs;
-  for (; !candidates.empty(); candidates.pop()) {
-    const auto [difference, t_truth, t_estimate, i, j] = candidates.top();
-    if (row[i].taken || row[j].taken) continue;
-    row[i].taken = row[j].taken = true;
-    pairs.push_back(row[i].is_truth ? Pair(*row[i].pose, *row[j].pose) : Pair(*row[j].pose, *row[i].pose));
-    const std::size_t before = row[i].before;
-    const std::size_t after = row[j].after;
-    row[before].after = after;
-    row[after].before = before;
-    propose(before, after);
+
+  /// Makes the neighbours of two neighbours neighbours and gives them.
+  std::pair<std::size_t, std::size_t> Remove(std::size_t i, std::size_t j) {
+    const std::size_t before = row_[i].before;
+    const std::size_t after = row_[j].after;
+    row_[before].after = after;
+    row_[after].before = before;
+    return {before, after};
   }
+
+  std::vector<Entry> row_{Entry{}};
+};
+
+std::vector<PosePair> PairUniquely(const Trajectory& truth, const Trajectory& estimate, TimeNs offset,
+                                   TimeNs max_difference) {
+  auto pairs = StampRow(truth, estimate, offset).TakePairs(max_difference);
   std::ranges::sort(pairs, {}, [](const PosePair& pair) { return std::pair(pair.t_truth, pair.t_estimate); });
   return pairs;
 }

@@ -14,6 +14,8 @@ namespace evo {
 
 namespace {
 
+constexpr std::size_t kMostPairs = 10'000'000;  // half a gigabyte with their errors
+
 constexpr std::pair<const char*, DeltaUnit> kUnits[] = {{"f", DeltaUnit::kFrames},
                                                         {"m", DeltaUnit::kMetres},
                                                         {"deg", DeltaUnit::kDegrees},
@@ -143,6 +145,11 @@ std::vector<IndexPair> ByDirectAngle(std::span<const StampedPose> poses, double 
     for (std::size_t j = i + 1; j < poses.size(); ++j) {
       const double cosine = std::abs(poses[i].T_world_cam.rotation().dot(poses[j].T_world_cam.rotation()));
       if (cosine >= least_cosine && cosine <= largest_cosine) pairs.push_back(Pair(i, j));
+    }
+    if (pairs.size() > kMostPairs) {
+      throw Error(ErrorKind::kUsage, "more than " + std::to_string(kMostPairs) +
+                                         " pairs of poses are turned by about this angle; choose --rpe-pairs "
+                                         "consecutive, a smaller evaluation.rpe_tolerance or a shorter interval");
     }
   }
   return pairs;

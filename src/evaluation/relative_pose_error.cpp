@@ -29,8 +29,7 @@ PoseDifferences RelativeDifferences(std::span<const PosePair> pairs, std::span<c
 Trajectory Matched(std::span<const PosePair> pairs, bool of_truth) {
   Trajectory poses;
   for (const auto& pair : pairs) {
-    poses.push_back(of_truth ? StampedPose{pair.t_truth, pair.T_world_cam_truth}
-                             : StampedPose{pair.t_estimate, pair.T_world_cam_estimate});
+    poses.push_back({pair.t_truth, of_truth ? pair.T_world_cam_truth : pair.T_world_cam_estimate});
   }
   return poses;
 }
@@ -68,8 +67,9 @@ std::vector<RelativePoseError> ComputeRelativePoseErrors(std::span<const PosePai
       for (auto& motion : motions) std::swap(motion.first, motion.second);
     }
     if (motions.empty() && options.required) {
-      throw Error(ErrorKind::kNothingToDo, "no two of the " + std::to_string(pairs.size()) + " matched poses are " +
-                                               delta.name + " apart; choose a smaller distance or a larger tolerance");
+      throw Error(ErrorKind::kNothingToDo, "no pair (" + options.pairs + ") of the " + std::to_string(pairs.size()) +
+                                               " matched poses is " + delta.name +
+                                               " apart; choose a smaller distance or a larger tolerance");
     }
     results.push_back({delta, options.pairs, Summarize(RelativeDifferences(pairs, motions), kRelativeRelations)});
   }

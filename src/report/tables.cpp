@@ -222,9 +222,12 @@ void WriteLifetimes(const std::filesystem::path& path, const LifetimeStatistics&
 
 std::string FormatSummary(const Evaluation& evaluation) {
   std::string table;
-  table += "path " + Short(evaluation.path_m, 2) + " m, " + Short(ToSeconds(evaluation.to - evaluation.from), 2) +
-           " s, coverage " + Short(100.0 * evaluation.coverage, 1) + " %, gaps " + std::to_string(evaluation.gaps) +
-           ", up " + AxisName(evaluation.up) + "\n";
+  table += "path " + Short(evaluation.path_m, 2) + " m, ";
+  if (evaluation.has_stamps) {
+    table += Short(ToSeconds(evaluation.to - evaluation.from), 2) + " s, coverage " +
+             Short(100.0 * evaluation.coverage, 1) + " %, gaps " + std::to_string(evaluation.gaps) + ", ";
+  }
+  table += "up " + AxisName(evaluation.up) + "\n";
   const std::string& delta = evaluation.alignments.front().rpe.front().delta.name;
   AppendLine(&table, {"alignment", "scale", "poses", "longitud.", "lateral", "planar", "planar", "planar max",
                       "planar end", "APE rmse", "RPE rmse"});

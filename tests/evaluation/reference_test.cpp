@@ -225,6 +225,35 @@ TEST_P(TumReference, EvaluateRpe) {
 INSTANTIATE_TEST_SUITE_P(Tum, TumReference, ::testing::Values("est_se3", "est_dense", "est_drift"),
                          [](const auto& test) { return test.param; });
 
+/// rpg_trajectory_evaluation's absolute errors: it associates as evaluate_ate does, and its up is z.
+TEST(RpgReference, AbsoluteErrorsOfEveryAlignment) {
+  int rows = 0;
+  for (const auto& row : ReadReferenceTable("rpg_reference.csv")) {
+    if (!row.at("file").starts_with("absolute_err") || row.at("label") == "scale") continue;
+    const std::string method = row.at("align");
+    const std::string span = row.at("n_align") == "-1" ? "" : ":" + row.at("n_align");
+    EvaluationOptions options;
+    options.association.association = "unique";
+    options.up = "z";
+    const auto relation = row.at("label") == "rot" ? PoseRelation::kRotationDeg : PoseRelation::kTranslation;
+    const std::string name = row.at("est") + " " + method + span + " " + row.at("label");
+    const auto alignment = ParseAlignment(method == "se3" && span == ":1" ? "origin" : method + span);
+    const auto evaluation = Evaluate(ReadReferenceTrajectory("gt.txt"), ReadReferenceTrajectory(row.at("est") + ".txt"),
+                                     std::vector{alignment}, {}, options);
+    const Statistics& statistics = evaluation.alignments.front().Ape(relation);
+    EXPECT_EQ(statistics.count, std::stoll(row.at("n"))) << name;
+    const double tolerance = 1e-9;
+    ExpectEqual(statistics.rmse, row.at("rmse"), tolerance, name + " rmse");
+    ExpectEqual(statistics.mean, row.at("mean"), tolerance, name + " mean");
+    ExpectEqual(statistics.median, row.at("median"), tolerance, name + " median");
+    ExpectEqual(statistics.standard_deviation, row.at("std"), tolerance, name + " std");
+    ExpectEqual(statistics.min, row.at("min"), tolerance, name + " min");
+    ExpectEqual(statistics.max, row.at("max"), tolerance, name + " max");
+    ++rows;
+  }
+  EXPECT_EQ(rows, 42);
+}
+
 TEST(DrivingReference, SplitsAlongTheTravelAndTheBody) {
   const auto rows = ReadReferenceTable("lonlat_reference.csv");
   ASSERT_EQ(rows.size(), 2u);

@@ -42,7 +42,8 @@ struct IndexPair {
 ///
 /// "all", evo's rules: every pose begins a pair. It ends delta frames later; or at the later pose whose path (metres)
 /// or time (seconds) is nearest to delta, if within tolerance * delta; or, for angles, at *every* later pose whose
-/// direct angle to it is within tolerance * delta, which takes time in proportion to the square of the poses.
+/// direct angle to it is within tolerance * delta, which takes time in proportion to the square of the poses;
+/// more than ten million such pairs are an Error (kUsage).
 ///
 /// "closest", as in evaluate_rpe of the TUM RGB-D tools: every pose begins a pair, which ends at the pose whose frame,
 /// path, accumulated angle or time is nearest to delta, however far off, the earlier of two equally near. Pairs that

@@ -26,10 +26,10 @@ struct RelativePoseError {
 };
 
 /// Of each motion the difference (T_i^-1 T_j)^-1 (P_i^-1 P_j) of truth T and estimate P (J. Sturm et al., IROS 2012,
-/// equation 2). `pairs` holds the aligned estimate, in order of time; `estimate` every aligned estimated pose, with or
-/// without a true one: "closest" looks for pairs there, as TUM's tool does, and leaves out those without truth; as
-/// there, the motion is taken backwards, from the later pose to the earlier, which changes its translation. Without
-/// stamps a delta in seconds has no pairs.
+/// equation 2). Seconds are those of the truth's stamps. `pairs` holds the aligned estimate, in order of time;
+/// `estimate` every aligned estimated pose, with or without a true one: "closest" looks for pairs there, as TUM's tool
+/// does, and leaves out those without truth; as there, the motion is taken backwards, from the later pose to the
+/// earlier, which changes its translation. Without stamps a delta in seconds has no pairs.
 std::vector<RelativePoseError> ComputeRelativePoseErrors(std::span<const PosePair> pairs, const Trajectory& estimate,
                                                          bool has_stamps, const RelativePoseErrorOptions& options);
 
