@@ -6,6 +6,7 @@
 
 #include "evo/report/figures.hpp"
 #include "evo/report/gnuplot.hpp"
+#include "evo/report/latex_tables.hpp"
 #include "evo/report/metric_rows.hpp"
 #include "evo/report/tables.hpp"
 
@@ -33,39 +34,54 @@ void WarnOfWhatIsMissing(const Evaluation& evaluation) {
   }
 }
 
+void DrawFigures(const std::filesystem::path& folder, const std::string& suffix, const Evaluation& evaluation,
+                 const AlignedEvaluation& result, const Restarts& known_restarts) {
+  const auto restarts = known_restarts.value_or(std::vector<TimeNs>());
+  Gnuplot gnuplot(folder);
+  const auto draw = [&](const std::string& name, const auto& figure) {
+    gnuplot.Draw(name + suffix, figure(name + suffix));
+  };
+  draw("trajectory", [&](const std::string& name) { return TrajectoryFigure(name, evaluation, result); });
+  draw("axes", [&](const std::string& name) { return AxesFigure(name, evaluation, result, restarts); });
+  draw("errors",
+       [&](const std::string& name) { return ErrorFigure(name, evaluation, result, ErrorAxis::kTime, restarts); });
+  draw("errors_distance",
+       [&](const std::string& name) { return ErrorFigure(name, evaluation, result, ErrorAxis::kDistance, restarts); });
+  draw("scale_drift", [&](const std::string& name) { return ScaleDriftFigure(name, evaluation, result, restarts); });
+}
+
 }  // namespace
 
 std::vector<std::string> EvaluationResultNames(std::span<const Alignment> alignments) {
-  std::vector<std::string> names{"summary.csv", "summary.json", "metrics.csv"};
+  std::vector<std::string> names{"summary.csv", "summary.json", "metrics.csv", "tables/errors.tex"};
   for (std::size_t i = 0; i < alignments.size(); ++i) names.push_back("errors" + Suffix(i, alignments[i]) + ".csv");
   return names;
 }
 
 void WriteEvaluationResults(const std::filesystem::path& folder, const std::string& sequence,
-                            const Evaluation& evaluation, bool with_plots, std::optional<std::int64_t> rebootstraps) {
+                            const Evaluation& evaluation, bool with_plots, const Restarts& restarts) {
   WarnOfWhatIsMissing(evaluation);
   if (evaluation.alignments.empty()) return;
+  const auto rebootstraps = restarts ? std::optional(static_cast<std::int64_t>(restarts->size())) : std::nullopt;
   const auto rows = SummaryRows(sequence, evaluation, rebootstraps);
   WriteCsv(folder / "summary.csv", rows);
   WriteJson(folder / "summary.json", rows);
   WriteCsv(folder / "metrics.csv", MetricRows(sequence, evaluation), Digits::kAll);
-  Gnuplot gnuplot(folder / "plots");
+  WriteLatex(folder / "tables" / "errors.tex", ErrorTable(sequence, evaluation));
   for (std::size_t i = 0; i < evaluation.alignments.size(); ++i) {
     const auto& result = evaluation.alignments[i];
     const std::string suffix = Suffix(i, result.alignment);
     WriteErrors(folder / ("errors" + suffix + ".csv"), result.errors, evaluation.has_stamps);
-    if (!with_plots) continue;
-    const std::string trajectory = "trajectory" + suffix;
-    const std::string errors = "errors" + suffix;
-    gnuplot.Draw(trajectory, TrajectoryFigure(trajectory, evaluation, result));
-    gnuplot.Draw(errors, ErrorFigure(errors, evaluation, result));
+    if (with_plots) DrawFigures(folder / "plots", suffix, evaluation, result, restarts);
   }
 }
 
-std::string SequenceName(const std::filesystem::path& ground_truth) {
-  std::string name = ground_truth.stem().string();
-  if (name == "groundtruth") return std::filesystem::absolute(ground_truth).parent_path().filename().string();
-  for (const std::string ending : {"_gt", "_groundtruth"}) {
+std::string SequenceName(const std::filesystem::path& file) {
+  std::string name = file.stem().string();
+  if (name == "groundtruth" || name == "events") {
+    return std::filesystem::absolute(file).parent_path().filename().string();
+  }
+  for (const std::string ending : {"_gt", "_groundtruth", "_data"}) {
     if (name.ends_with(ending) && name.size() > ending.size()) name.resize(name.size() - ending.size());
   }
   return name;

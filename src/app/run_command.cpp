@@ -4,6 +4,7 @@
 #include "app/commands.hpp"
 #include "app/error_place.hpp"
 #include "app/evaluation_results.hpp"
+#include "app/event_drawing.hpp"
 #include "app/interrupt.hpp"
 #include "app/options.hpp"
 #include "app/output_folder.hpp"
@@ -76,7 +77,7 @@ void RunEvaluationStage(const StageContext& context, const GroundTruth& truth, c
         "evaluate", [&] { return Evaluate(truth.trajectory, estimate, alignments, interval, options); });
     context.record->Time("write_evaluation", [&] {
       WriteEvaluationResults(context.options.out, SequenceName(truth.path), evaluation, !context.options.no_plots,
-                             static_cast<std::int64_t>(context.record->manifest.rebootstraps.size()));
+                             context.record->manifest.rebootstraps);
     });
     if (!evaluation.alignments.empty()) std::cout << FormatSummary(evaluation);
   });
@@ -94,6 +95,7 @@ void RunAll(const RunArguments& arguments, const std::vector<std::string>& comma
   if (truth) {
     RequireOverlap(*truth, recording, FromSeconds(config.evaluation.association.estimate_clock_offset_s));
   }
+  if (arguments.common.force) RemoveDrawings(arguments.stage.out / "images");
   const InterruptGuard guard(arguments.stage.out);
   ThreadPool pool(arguments.common.threads);
   const StageContext context{config, &pool, &record, arguments.stage, !arguments.common.quiet};

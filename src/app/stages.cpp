@@ -6,20 +6,19 @@
 #include <set>
 
 #include "app/error_place.hpp"
+#include "app/evaluation_results.hpp"
+#include "app/event_drawing.hpp"
+#include "evo/core/error.hpp"
 #include "evo/core/progress.hpp"
 #include "evo/io/trajectory_io.hpp"
 #include "evo/odometry/map_writer.hpp"
-#include "evo/report/draw.hpp"
 #include "evo/report/figures.hpp"
-#include "evo/report/png.hpp"
+#include "evo/report/latex_tables.hpp"
 #include "evo/report/tables.hpp"
 
 namespace evo::app {
 
 namespace {
-
-constexpr int kZoom = 3;
-constexpr TimeNs kDrawnEvents = 10'000'000;  // an exposure that shows edges about as sharp as the tracker sees them
 
 template <typename... Values>
 std::string Format(const char* format, Values... values) {
@@ -28,24 +27,37 @@ std::string Format(const char* format, Values... values) {
   return line;
 }
 
-void DrawFrame(const std::filesystem::path& folder, const TrackingView& view, TimeNs first) {
-  EventColumns events;
-  view.history.ForEachBetween(
-      view.t - kDrawnEvents / 2, view.t + kDrawnEvents / 2, [&](int x, int y, TimeNs t, std::int8_t polarity) {
-        events.push_back(t, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), polarity);
-      });
-  Canvas canvas = DrawEvents(events, view.history.width(), view.history.height(), PolarityColors::kRedBlue, kZoom);
-  TrackDrawing drawing;
-  drawing.zoom = kZoom;
-  drawing.alive = 0;
-  DrawTracks(&canvas, view.tracks, view.t, drawing);
-  WritePng(folder / ("frame_" + Format("%08.3f", ToSeconds(view.t - first)) + "s.png"), canvas);
+/// Where the interval ends, also if it was asked for beyond the end of the recording.
+TimeNs EndOfInterval(const Recording& recording) {
+  if (!recording.interval.to) return recording.reader->last_stamp();
+  const TimeNs to = recording.reader->first_stamp() + *recording.interval.to;
+  try {
+    return std::min(to, recording.reader->last_stamp());
+  } catch (const Error&) {
+    return to;  // damage beyond the interval is no concern of this run
+  }
+}
+
+/// Four frames in the middle of the interval, or four every `draw_every_s` seconds from its start on.
+DrawingSchedule ScheduleDrawings(const StageContext& context, const Recording& recording) {
+  const TimeNs start = recording.reader->first_stamp();
+  if (context.options.draw_every_s > 0.0) return {start, FromSeconds(context.options.draw_every_s)};
+  const TimeNs from = start + recording.interval.from;
+  return {from + (EndOfInterval(recording) - from) / 2 - 2 * FromSeconds(context.config.tracker.frame_interval_s),
+          std::nullopt};
 }
 
 std::size_t CountIds(const Tracks& tracks) {
   std::set<std::int64_t> ids;
   for (const auto& observation : tracks) ids.insert(observation.id);
   return ids.size();
+}
+
+void DrawTrackFigures(const std::filesystem::path& folder, const TrackingOutcome& outcome) {
+  Gnuplot gnuplot(folder);
+  gnuplot.Draw("lifetime", LifetimeFigure("lifetime", outcome.lifetimes));
+  gnuplot.Draw("lifetime_seconds", LifetimeSecondsFigure("lifetime_seconds", outcome.lifetimes));
+  gnuplot.Draw("live_features", LiveFeaturesFigure("live_features", outcome.result.tracks, outcome.result.frames));
 }
 
 }  // namespace
@@ -58,22 +70,18 @@ void AddStageOptions(CLI::App& command, StageOptions& options) {
 void AddDrawingOption(CLI::App& command, StageOptions& options) {
   command
       .add_option("--draw-every", options.draw_every_s,
-                  "draw the event frame with its tracks into images/ every so many seconds")
+                  "draw four event frames with their tracks into images/ every so many seconds; default: once, in the "
+                  "middle")
       ->check(CLI::Validator(CLI::PositiveNumber).description(""))
       ->type_name("S");
 }
 
-std::vector<std::string> TrackingResultNames() { return {"tracks.txt", "lifetime.csv"}; }
+std::vector<std::string> TrackingResultNames() { return {"tracks.txt", "lifetime.csv", "tables/lifetime.tex"}; }
 
 TrackingOutcome RunTrackingStage(const StageContext& context, Recording* recording) {
-  const TimeNs first = recording->reader->first_stamp();
-  const TimeNs interval = FromSeconds(context.options.draw_every_s);
-  TimeNs next_drawing = first;
-  const auto observe = [&](const TrackingView& view) {
-    if (view.t < next_drawing) return;
-    DrawFrame(context.options.out / "images", view, first);
-    next_drawing = std::max(next_drawing + interval, view.t);
-  };
+  const bool draw = context.options.draw_every_s > 0.0 || !context.options.no_plots;
+  EventDrawing drawing(context.options.out / "images", recording->reader->first_stamp(),
+                       draw ? ScheduleDrawings(context, *recording) : DrawingSchedule());
   TrackingOutcome outcome;
   outcome.result = context.record->Time("track", [&] {
     Progress progress("tracking", context.show_progress);
@@ -81,7 +89,7 @@ TrackingOutcome RunTrackingStage(const StageContext& context, Recording* recordi
       return TrackEvents(
           recording->reader.get(), recording->camera.width(), recording->camera.height(), context.config.tracker,
           context.pool, [&](double done) { progress.Update(done); },
-          context.options.draw_every_s > 0.0 ? observe : std::function<void(const TrackingView&)>{});
+          draw ? [&](const TrackingView& view) { drawing.Observe(view); } : std::function<void(const TrackingView&)>{});
     });
   });
   RoundAsWritten(&outcome.result.tracks);  // the odometry from tracks.txt shall give the same trajectory
@@ -90,9 +98,9 @@ TrackingOutcome RunTrackingStage(const StageContext& context, Recording* recordi
     WriteTracks(context.options.out / "tracks.txt", outcome.result.tracks,
                 {"pixels of the raw sensor, each at the very instant of its stamp"});
     WriteLifetimes(context.options.out / "lifetime.csv", outcome.lifetimes);
-    if (!context.options.no_plots) {
-      Gnuplot(context.options.out / "plots").Draw("lifetime", LifetimeFigure("lifetime", outcome.lifetimes));
-    }
+    WriteLatex(context.options.out / "tables" / "lifetime.tex",
+               LifetimeTable(SequenceName(recording->events), outcome.lifetimes));
+    if (!context.options.no_plots) DrawTrackFigures(context.options.out / "plots", outcome);
   });
   const auto& frames = outcome.result.frames;
   context.record->manifest.recorded_s = ToSeconds(frames.back() - frames.front());

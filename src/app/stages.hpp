@@ -18,7 +18,7 @@ namespace evo::app {
 struct StageOptions {
   std::filesystem::path out;
   bool no_plots = false;
-  double draw_every_s = 0.0;  ///< 0: no images of event frames
+  double draw_every_s = 0.0;  ///< 0: event frames are drawn once, in the middle, unless no_plots
 };
 
 /// --out and --no-plots.
@@ -42,8 +42,8 @@ struct TrackingOutcome {
 
 /// Files that the tracking stage leaves in the output folder.
 std::vector<std::string> TrackingResultNames();
-/// Tracks the recording and writes tracks.txt, lifetime.csv, plots/lifetime and, every `draw_every_s` seconds, the
-/// event frame with its tracks as images/frame_SECONDS.png. Throws Error.
+/// Tracks the recording and writes tracks.txt, lifetime.csv, tables/lifetime.tex, the plots lifetime, lifetime_seconds
+/// and live_features and, in images/, what EventDrawing draws. Throws Error.
 TrackingOutcome RunTrackingStage(const StageContext& context, Recording* recording);
 
 std::vector<std::string> OdometryResultNames();

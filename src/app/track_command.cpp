@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "app/commands.hpp"
+#include "app/event_drawing.hpp"
 #include "app/interrupt.hpp"
 #include "app/options.hpp"
 #include "app/output_folder.hpp"
@@ -25,6 +26,7 @@ void RunTrack(const TrackArguments& arguments, const std::vector<std::string>& c
   CheckOutputFolder(arguments.stage.out, results, arguments.common.force);
   RunRecord record(command_line, config.parameters);
   Recording recording = OpenRecording(arguments.recording, &record);
+  if (arguments.common.force) RemoveDrawings(arguments.stage.out / "images");
   const InterruptGuard guard(arguments.stage.out);
   ThreadPool pool(arguments.common.threads);
   const StageContext context{config, &pool, &record, arguments.stage, !arguments.common.quiet};

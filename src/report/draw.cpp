@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <opencv2/imgproc.hpp>
 
 namespace evo {
 
 namespace {
 
 constexpr Color kWhite{255, 255, 255};
+constexpr Color kBlack{0, 0, 0};
+constexpr Color kGrey{150, 150, 150};
 
 std::size_t Offset(const Canvas& canvas, int x, int y) {
   return 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(canvas.width) + static_cast<std::size_t>(x));
@@ -32,7 +35,7 @@ void Stroke(Canvas* canvas, const Eigen::Array2d& low, const Eigen::Array2d& hig
 }
 
 Color PolarityColor(PolarityColors colors, int polarity) {
-  if (colors == PolarityColors::kRedBlue) return polarity > 0 ? Color{214, 39, 40} : Color{31, 87, 180};
+  if (colors == PolarityColors::kRedBlue) return polarity > 0 ? Color{240, 150, 140} : Color{150, 185, 235};
   return polarity > 0 ? Color{170, 170, 170} : Color{50, 50, 50};
 }
 
@@ -110,6 +113,35 @@ void DrawDisc(Canvas* canvas, const Eigen::Vector2d& center, double radius, Colo
          [&](const Eigen::Vector2d& point) { return (point - center).norm(); });
 }
 
+void DrawLabel(Canvas* canvas, int x, int y, const std::string& text, int height) {
+  constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
+  const int thickness = std::max(1, height / 10);
+  const double scale = cv::getFontScaleFromHeight(kFont, height, thickness);
+  const cv::Size size = cv::getTextSize(text, kFont, scale, thickness, nullptr);
+  const int margin = height / 2;
+  cv::Mat image(canvas->height, canvas->width, CV_8UC3, canvas->rgb.data());
+  cv::rectangle(image, {x, y, size.width + 2 * margin, size.height + 2 * margin},
+                cv::Scalar(kWhite.red, kWhite.green, kWhite.blue), cv::FILLED);
+  cv::putText(image, text, {x + margin, y + margin + size.height}, kFont, scale,
+              cv::Scalar(kBlack.red, kBlack.green, kBlack.blue), thickness, cv::LINE_AA);
+}
+
+Canvas Sheet(std::span<const Canvas> panels, int columns, int gap) {
+  const int rows = (static_cast<int>(panels.size()) + columns - 1) / columns;
+  const int width = panels.front().width;
+  const int height = panels.front().height;
+  Canvas sheet(columns * width + (columns - 1) * gap, rows * height + (rows - 1) * gap, kGrey);
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const int left = static_cast<int>(i) % columns * (width + gap);
+    const int top = static_cast<int>(i) / columns * (height + gap);
+    for (int row = 0; row < height; ++row) {
+      const auto from = panels[i].rgb.begin() + static_cast<std::ptrdiff_t>(Offset(panels[i], 0, row));
+      std::copy_n(from, 3 * width, sheet.rgb.begin() + static_cast<std::ptrdiff_t>(Offset(sheet, left, top + row)));
+    }
+  }
+  return sheet;
+}
+
 Canvas DrawEvents(const EventColumns& events, int width, int height, PolarityColors colors, int zoom) {
   Canvas canvas(width * zoom, height * zoom, kWhite);
   for (std::size_t i = 0; i < events.size(); ++i) {
@@ -138,10 +170,16 @@ Color TrackColor(std::int64_t id) {
 
 void DrawTracks(Canvas* canvas, const Tracks& tracks, TimeNs t, const TrackDrawing& drawing) {
   const double zoom = drawing.zoom;
-  for (const auto& [id, tail] : CollectTails(tracks, t, drawing)) {
-    const Color color = TrackColor(id);
-    for (std::size_t i = 1; i < tail.size(); ++i) DrawLine(canvas, tail[i - 1], tail[i], color, 0.5 + 0.5 * zoom);
-    DrawDisc(canvas, tail.front(), 1.0 + 0.5 * zoom, color);
+  const auto tails = CollectTails(tracks, t, drawing);
+  // All outlines first, then all tracks: none hides another.
+  for (const double outline : {0.5 * zoom, 0.0}) {
+    for (const auto& [id, tail] : tails) {
+      const Color color = outline > 0.0 ? kWhite : TrackColor(id);
+      for (std::size_t i = 1; i < tail.size(); ++i) {
+        DrawLine(canvas, tail[i - 1], tail[i], color, 0.5 + 0.5 * zoom + outline);
+      }
+      DrawDisc(canvas, tail.front(), 1.0 + 0.5 * zoom + 0.5 * outline, color);
+    }
   }
 }
 

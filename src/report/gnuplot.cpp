@@ -49,14 +49,18 @@ class WorkingFolder {
 std::string Script(const std::string& name, const Figure& figure) {
   std::ostringstream script;
   script << "# 'gnuplot " << name << ".gp' in this folder draws " << name << ".svg and " << name << ".pdf again.\n"
+         << "do for [ending in 'svg pdf'] {\n"
+         << "reset\n"
+         << "if (ending eq 'svg') {\n"
          << "set terminal svg noenhanced size " << figure.width << "," << figure.height
          << " font 'DejaVu Sans,14' background '#ffffff'\n"
-         << "set output '" << name << ".svg'\n"
-         << figure.script << "set terminal pdfcairo noenhanced size " << kPdfWidthInches << ","
+         << "} else {\n"
+         << "set terminal pdfcairo noenhanced size " << kPdfWidthInches << ","
          << kPdfWidthInches * figure.height / figure.width << " font 'DejaVu Sans,13' linewidth 1.2\n"
-         << "set output '" << name << ".pdf'\n"
-         << "replot\n"
-         << "unset output\n";
+         << "}\n"
+         << "set output '" << name << ".'.ending\n"
+         << figure.script << "unset output\n"
+         << "}\n";
   return script.str();
 }
 

@@ -13,6 +13,7 @@ void WritePng(const std::filesystem::path& path, const Canvas& canvas) {
   image.width = static_cast<png_uint_32>(canvas.width);
   image.height = static_cast<png_uint_32>(canvas.height);
   image.format = PNG_FORMAT_RGB;
+  image.flags = PNG_IMAGE_FLAG_FAST;  // for event frames a quarter larger, in a fraction of the time
   PendingPath pending(path);
   if (!png_image_write_to_file(&image, pending.temporary().c_str(), 0, canvas.rgb.data(), 0, nullptr)) {
     throw Error(ErrorKind::kOutput,

@@ -199,6 +199,7 @@ void WriteLifetimes(const std::filesystem::path& path, const LifetimeStatistics&
   auto& out = file.stream();
   out << "quantity,unit,bin_low,bin_high,value\n"
       << "frames,count,,," << statistics.frames << '\n'
+      << "frame_interval,s,,," << Format(statistics.frame_interval_s) << '\n'
       << "tracks,count,,," << statistics.tracks << '\n'
       << "tracks_too_short,count,,," << statistics.tracks_too_short << '\n'
       << "tracks_cut_short,count,,," << statistics.tracks_cut_short << '\n';
@@ -212,6 +213,9 @@ void WriteLifetimes(const std::filesystem::path& path, const LifetimeStatistics&
   write_moments(statistics.in_seconds, "s");
   for (const auto& bin : statistics.histogram) {
     out << "histogram,tracks," << bin.low << ',' << bin.high << ',' << bin.tracks << '\n';
+  }
+  for (const auto& bin : statistics.histogram_seconds) {
+    out << "histogram_s,tracks," << Format(bin.low) << ',' << Format(bin.high) << ',' << bin.tracks << '\n';
   }
   file.Commit();
 }

@@ -143,7 +143,8 @@ TEST_F(CommandLineTest, EvaluateWritesItsTablesAndAManifest) {
   EXPECT_EQ(manifest["counts"]["matched_poses"], 586);
   EXPECT_EQ(manifest["parameters"]["evaluation"]["association"], "nearest");
   EXPECT_EQ(manifest["inputs"][0]["sha256"].get<std::string>().size(), 64u);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder / "result"), {}), 6);
+  EXPECT_TRUE(fs::exists(folder / "result" / "tables" / "errors.tex"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder / "result"), {}), 7);
 }
 
 TEST_F(CommandLineTest, EarlierResultsAreKeptUnlessForced) {

@@ -46,6 +46,14 @@ class PipelineTest : public EvoRunTest {
     return found == std::string::npos ? 0.0 : std::stod(csv.substr(found + key.size()));
   }
 
+  /// Sorted.
+  static std::vector<std::string> FileNames(const fs::path& directory) {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(directory)) names.push_back(entry.path().filename().string());
+    std::ranges::sort(names);
+    return names;
+  }
+
   std::string To(const std::string& result) const { return " --out " + Quote(folder / result); }
 
   /// Events and calibration alone: no ground truth at hand.
@@ -73,10 +81,12 @@ TEST_F(PipelineTest, RunKeepsItsQuality) {
   EXPECT_LT(std::stod(sim3["mean_planar_percent"]), 0.5);
   EXPECT_GT(MeanLifetime("result"), 20.0);
   for (const char* name : {"tracks.txt", "trajectory.txt", "map.ply", "errors.csv", "errors_sim3.csv", "summary.json",
-                           "plots/trajectory.gp", "plots/errors.gp", "plots/lifetime.gp"}) {
+                           "plots/trajectory.gp", "plots/axes.gp", "plots/errors.gp", "plots/errors_distance.gp",
+                           "plots/errors_sim3.gp", "plots/lifetime.gp", "plots/lifetime_seconds.gp",
+                           "plots/live_features.gp", "tables/lifetime.tex", "tables/errors.tex"}) {
     EXPECT_TRUE(fs::exists(folder / "result" / name)) << name;
   }
-  EXPECT_EQ(CountFiles(folder / "result" / "images"), 2);
+  EXPECT_EQ(CountFiles(folder / "result" / "images"), 2 * 5);  // at 0 and 1 s, four frames and their sheet each
   const auto manifest = nlohmann::json::parse(ReadFile(folder / "result" / "manifest.json"));
   EXPECT_EQ(manifest["counts"]["events"], 982468);
   EXPECT_EQ(manifest["inputs"].size(), 3u);
@@ -111,6 +121,31 @@ TEST_F(PipelineTest, StageByStageGivesWhatRunGives) {
             0)
       << err;
   ExpectSameBytes("whole", "stages", {"tracks.txt", "lifetime.csv", "trajectory.txt", "map.ply"});
+}
+
+TEST_F(PipelineTest, FourFramesInTheMiddleAreDrawnUnlessThereShallBeNoPlots) {
+  const std::string words = "track -q --to 0.4 --events " + Quote(Sample()) + To("result");
+  ASSERT_EQ(Run(words), 0) << err;
+  const fs::path images = folder / "result" / "images";
+  const std::vector<std::string> expected{"four_frames_0000.160s.png", "frame_0000.160s.png", "frame_0000.180s.png",
+                                          "frame_0000.200s.png", "frame_0000.220s.png"};
+  EXPECT_EQ(FileNames(images), expected);
+  // An earlier run's images do not stay behind; what is not ours does.
+  std::ofstream(images / "four_frames_0007.000s.png") << "earlier";
+  std::ofstream(images / "frame_of_mine.png") << "mine";
+  EXPECT_EQ(Refusal(words), 8);
+  EXPECT_TRUE(fs::exists(images / "four_frames_0007.000s.png"));
+  ASSERT_EQ(Run(words + " --no-plots --force"), 0) << err;
+  EXPECT_EQ(FileNames(images), std::vector<std::string>{"frame_of_mine.png"});
+}
+
+TEST_F(PipelineTest, DrawingsThatAreDueDuringOneFollowIt) {
+  ASSERT_EQ(Run("track -q --no-plots --draw-every 0.001 --to 0.25 --events " + Quote(Sample()) + To("result")), 0);
+  std::vector<std::string> sheets = FileNames(folder / "result" / "images");
+  const auto frames = std::erase_if(sheets, [](const std::string& name) { return name.starts_with("frame_"); });
+  EXPECT_EQ(sheets, (std::vector<std::string>{"four_frames_0000.020s.png", "four_frames_0000.100s.png",
+                                              "four_frames_0000.180s.png"}));
+  EXPECT_EQ(frames, 12u);  // each once
 }
 
 TEST_F(PipelineTest, AnInterruptedRunLeavesNothingHalfWritten) {

@@ -89,6 +89,54 @@ TEST(Draw, TracksAliveHaveADotAndATail) {
   EXPECT_EQ(early.At(45, 30), kWhite);  // what is yet to come
 }
 
+TEST(Draw, ATrackHasItsColourOnEventsAndInEveryPanelOfASheet) {
+  EventColumns events;
+  for (std::uint16_t x = 0; x < 40; ++x) {
+    for (std::uint16_t y = 0; y < 30; ++y) events.push_back(x, x, y, x % 2 ? 1 : -1);
+  }
+  Tracks tracks;
+  for (int i = 0; i < 4; ++i) {
+    for (const int id : {5, 6}) tracks.push_back({id, i * 25'000'000, 5.0 + 8 * i, 10.0 * (id - 4)});
+  }
+  std::vector<Canvas> panels;
+  for (int i = 0; i < 4; ++i) {
+    panels.push_back(DrawEvents(events, 40, 30, PolarityColors::kRedBlue, 3));
+    DrawTracks(&panels.back(), tracks, i * 25'000'000, {10, 0, 3});
+  }
+  const Canvas sheet = Sheet(panels, 2, 6);
+  EXPECT_EQ(sheet.width, 2 * 120 + 6);
+  EXPECT_EQ(sheet.height, 2 * 90 + 6);
+  for (int i = 0; i < 4; ++i) {
+    const int left = i % 2 * 126;
+    const int top = i / 2 * 96;
+    for (const int id : {5, 6}) {
+      EXPECT_EQ(sheet.At(left + 3 * (5 + 8 * i) + 1, top + 30 * (id - 4) + 1), TrackColor(id)) << i;
+    }
+    for (int x = 0; x < 120; ++x) EXPECT_EQ(sheet.At(left + x, top), panels[i].At(x, 0));
+  }
+  for (int y = 0; y < sheet.height; ++y) EXPECT_EQ(sheet.At(120 + 3, y), sheet.At(120, 92)) << y;  // the gaps
+}
+
+TEST(Draw, LabelsAreBlackOnWhiteAndAsHighAsTheyShould) {
+  constexpr Color kRed{255, 0, 0};
+  Canvas canvas(300, 80, kRed);
+  DrawLabel(&canvas, 10, 20, "t = 1.250 s", 24);
+  int low = 80;
+  int high = 0;
+  for (int y = 0; y < 80; ++y) {
+    for (int x = 0; x < 300; ++x) {
+      if (canvas.At(x, y) != kBlack) continue;
+      low = std::min(low, y);
+      high = std::max(high, y);
+    }
+  }
+  EXPECT_NEAR(high - low, 24, 4);
+  EXPECT_EQ(canvas.At(11, 21), kWhite);
+  EXPECT_EQ(canvas.At(9, 40), kRed);
+  EXPECT_EQ(canvas.At(11, 19), kRed);
+  DrawLabel(&canvas, 290, 70, "cut off at the edge", 24);
+}
+
 TEST(Draw, TrackColorsDifferAndStay) {
   std::set<std::tuple<int, int, int>> colors;
   for (int id = 0; id < 30; ++id) {

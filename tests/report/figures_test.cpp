@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
+#include <span>
 #include <sstream>
 
 #include "fixtures.hpp"
@@ -39,38 +41,178 @@ TEST_F(FiguresTest, TrajectoryIsSeenFromAboveAndBrokenAtGaps) {
   EXPECT_EQ(blocks[0].size(), 201u);
   EXPECT_EQ(blocks[1].size(), 81u);
   EXPECT_EQ(blocks[2].size(), 101u);
-  EXPECT_EQ(blocks[2].back(), "10.000000 0.000000 98.000000");
+  EXPECT_EQ(blocks[2].back(), "10 0 0 98");
   EXPECT_NE(figure.script.find("set size ratio -1"), std::string::npos);
   EXPECT_NE(figure.script.find("set xlabel 'x (m)'"), std::string::npos);
   EXPECT_NE(figure.script.find("set ylabel 'z (m)'"), std::string::npos);
+  EXPECT_NE(figure.script.find("index 1 using 2:4"), std::string::npos);
+  EXPECT_EQ(AxesFigure("t", evaluation, evaluation.alignments[0], {}).data, figure.data);
 }
 
 TEST_F(FiguresTest, ErrorsAreSignedAndBrokenAtGaps) {
   const auto evaluation = SampleEvaluation();
-  const auto blocks = Blocks(ErrorFigure("e", evaluation, evaluation.alignments[0]).data);
+  for (const ErrorAxis axis : {ErrorAxis::kTime, ErrorAxis::kDistance}) {
+    const auto blocks = Blocks(ErrorFigure("e", evaluation, evaluation.alignments[0], axis, {}).data);
+    ASSERT_EQ(blocks.size(), 2u);
+    EXPECT_EQ(blocks[1].front(), "5 50 -1 0 1 0");
+    EXPECT_EQ(blocks[1].back(), "10 100 -2 0 2 0");
+  }
+}
+
+TEST_F(FiguresTest, ErrorsGoOverTimeOrDistance) {
+  const auto evaluation = SampleEvaluation();
+  const auto& result = evaluation.alignments[0];
+  const std::string time = ErrorFigure("e", evaluation, result, ErrorAxis::kTime, {}).script;
+  const std::string distance = ErrorFigure("e", evaluation, result, ErrorAxis::kDistance, {}).script;
+  EXPECT_NE(time.find("using 1:3 "), std::string::npos) << time;
+  EXPECT_NE(time.find("set xrange [0:10]"), std::string::npos) << time;
+  EXPECT_NE(time.find("set xlabel 'time (s)'"), std::string::npos) << time;
+  EXPECT_NE(distance.find("using 2:3 "), std::string::npos) << distance;
+  EXPECT_NE(distance.find("set xrange [0:100]"), std::string::npos) << distance;
+  EXPECT_NE(distance.find("set xlabel 'distance travelled (m)'"), std::string::npos) << distance;
+  auto without_stamps = evaluation;
+  without_stamps.has_stamps = false;
+  const std::string frames = AxesFigure("e", without_stamps, result, {}).script;
+  EXPECT_NE(frames.find("set xlabel 'frame'"), std::string::npos) << frames;
+}
+
+TEST_F(FiguresTest, GapsAreShadedAndRestartsMarked) {
+  const auto evaluation = SampleEvaluation();
+  const auto& result = evaluation.alignments[0];
+  const std::vector<TimeNs> restarts{5 * kNsPerSecond};
+  const std::string time = ErrorFigure("e", evaluation, result, ErrorAxis::kTime, restarts).script;
+  EXPECT_NE(time.find("set object rectangle from 4, graph 0 to 5, graph 1"), std::string::npos) << time;
+  EXPECT_NE(time.find("set arrow from 5, graph 0 to 5, graph 1"), std::string::npos) << time;
+  EXPECT_NE(time.find("'no pose'"), std::string::npos) << time;
+  EXPECT_NE(time.find("'started anew'"), std::string::npos) << time;
+  const std::string distance = ErrorFigure("e", evaluation, result, ErrorAxis::kDistance, restarts).script;
+  EXPECT_NE(distance.find("set object rectangle from 40, graph 0 to 50, graph 1"), std::string::npos) << distance;
+  EXPECT_NE(distance.find("set arrow from 50, graph 0 to 50, graph 1"), std::string::npos) << distance;
+}
+
+TEST_F(FiguresTest, AnEstimateThatStopsEarlyShowsIt) {
+  Trajectory truth;
+  for (int i = 0; i <= 100; ++i) truth.push_back({i * (kNsPerSecond / 10), SE3({1, 0, 0, 0}, {0, 0, 1.0 * i})});
+  const Trajectory estimate(truth.begin() + 20, truth.begin() + 60);
+  const auto evaluation = Evaluate(truth, estimate, ParseAlignments("none"), {}, EvaluationOptions());
+  const auto& result = evaluation.alignments[0];
+  for (const std::string& script : {ErrorFigure("e", evaluation, result, ErrorAxis::kTime, {}).script,
+                                    AxesFigure("e", evaluation, result, {}).script}) {
+    EXPECT_NE(script.find("set xrange [0:10]"), std::string::npos) << script;
+    EXPECT_NE(script.find("set object rectangle from 0, graph 0 to 2, graph 1"), std::string::npos) << script;
+    EXPECT_NE(script.find("set object rectangle from 5.9, graph 0 to 10, graph 1"), std::string::npos) << script;
+  }
+  const std::string distance = ErrorFigure("e", evaluation, result, ErrorAxis::kDistance, {}).script;
+  EXPECT_EQ(distance.find("set object"), std::string::npos) << distance;
+}
+
+TEST_F(FiguresTest, ScaleDriftIsBrokenWhereItIsUndetermined) {
+  auto evaluation = SampleEvaluation();
+  evaluation.alignments[0].segments.local_scale = {
+      {0.0, 0.0, 1.25}, {0.4, 4.0, NAN}, {0.8, 8.0, NAN}, {1.0, 10.0, 0.75}, {1.5, 15.0, 1.0}};
+  const Figure figure = ScaleDriftFigure("s", evaluation, evaluation.alignments[0], {});
+  const auto blocks = Blocks(figure.data);
   ASSERT_EQ(blocks.size(), 2u);
-  EXPECT_EQ(blocks[1].back(), "10.000000 -2.000000 0.000000 2.000000");
+  EXPECT_EQ(blocks[0], std::vector<std::string>{"0 0 1.25"});
+  EXPECT_EQ(blocks[1], (std::vector<std::string>{"1 10 0.75", "1.5 15 1"}));
+}
+
+TEST_F(FiguresTest, LiveFeaturesCountEveryFrame) {
+  const std::vector<TimeNs> frames{kNsPerSecond, 2 * kNsPerSecond, 3 * kNsPerSecond, 4 * kNsPerSecond};
+  const Tracks tracks{{1, frames[0], 0, 0}, {2, frames[0], 0, 0}, {1, frames[1], 0, 0}, {2, frames[3], 0, 0}};
+  const Figure figure = LiveFeaturesFigure("f", tracks, frames);
+  EXPECT_EQ(figure.data, "# seconds since the first frame, live features\n0 2\n1 1\n2 0\n3 1\n");
+  EXPECT_NE(figure.script.find("'mean 1.0'"), std::string::npos) << figure.script;
+}
+
+TEST_F(FiguresTest, APoseAloneIsAPoint) {
+  Trajectory truth;
+  for (int i = 0; i <= 60; ++i) truth.push_back({i * (kNsPerSecond / 10), SE3({1, 0, 0, 0}, {0, 0, 1.0 * i})});
+  const auto script = [&](const Trajectory& estimate) {
+    const auto evaluation = Evaluate(truth, estimate, ParseAlignments("none"), {}, EvaluationOptions());
+    return ErrorFigure("e", evaluation, evaluation.alignments[0], ErrorAxis::kTime, {}).script;
+  };
+  EXPECT_NE(script({truth[30]}).find("with linespoints"), std::string::npos);
+  EXPECT_EQ(script(truth).find("with linespoints"), std::string::npos);
+}
+
+TEST_F(FiguresTest, LongCurvesAreThinnedInThePictureOnly) {
+  Trajectory truth;
+  for (TimeNs i = 0; i < 12'000; ++i)
+    truth.push_back({i * 10'000'000, SE3({1, 0, 0, 0}, {0, 0, 0.1 * static_cast<double>(i)})});
+  const auto evaluation = Evaluate(truth, truth, ParseAlignments("none"), {}, EvaluationOptions());
+  const Figure figure = ErrorFigure("e", evaluation, evaluation.alignments[0], ErrorAxis::kTime, {});
+  EXPECT_EQ(Blocks(figure.data)[0].size(), 12'000u);
+  EXPECT_NE(figure.script.find("data every 3 using"), std::string::npos) << figure.script;
+}
+
+/// All figures of one evaluation and of `tracks`; true if gnuplot drew every one of them without a word.
+bool DrawsAll(const fs::path& folder, const Evaluation& evaluation, std::span<const TimeNs> restarts,
+              const LifetimeStatistics& lifetimes, const Tracks& tracks, std::span<const TimeNs> frames) {
+  const auto& result = evaluation.alignments[0];
+  const std::vector<std::pair<std::string, Figure>> figures{
+      {"trajectory", TrajectoryFigure("trajectory", evaluation, result)},
+      {"axes", AxesFigure("axes", evaluation, result, restarts)},
+      {"errors", ErrorFigure("errors", evaluation, result, ErrorAxis::kTime, restarts)},
+      {"errors_distance", ErrorFigure("errors_distance", evaluation, result, ErrorAxis::kDistance, restarts)},
+      {"scale", ScaleDriftFigure("scale", evaluation, result, restarts)},
+      {"lifetime", LifetimeFigure("lifetime", lifetimes)},
+      {"lifetime_seconds", LifetimeSecondsFigure("lifetime_seconds", lifetimes)},
+      {"live_features", LiveFeaturesFigure("live_features", tracks, frames)}};
+  bool all = true;
+  for (const auto& [name, figure] : figures) {
+    Gnuplot(folder).Draw(name, figure);
+    for (const char* ending : {".svg", ".pdf"}) {
+      if (fs::exists(folder / (name + ending))) continue;
+      ADD_FAILURE() << folder / (name + ending) << " is missing\n" << figure.script;
+      all = false;
+    }
+  }
+  return all;
 }
 
 TEST_F(FiguresTest, DrawsSvgAndPdfWithTheSameBytesEachTime) {
   if (!HaveGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
-  const auto evaluation = SampleEvaluation();
-  const auto& result = evaluation.alignments[0];
+  LifetimeStatistics lifetimes;
+  lifetimes.histogram = {{3, 5, 4}, {5, 7, 1}};
+  lifetimes.histogram_seconds = {{0.0, 0.05, 4}, {0.05, 0.1, 1}};
+  const std::vector<TimeNs> restarts{5 * kNsPerSecond, 7 * kNsPerSecond};
   for (const char* run : {"a", "b"}) {
-    Gnuplot gnuplot(folder / run);
-    gnuplot.Draw("trajectory", TrajectoryFigure("trajectory", evaluation, result));
-    gnuplot.Draw("errors", ErrorFigure("errors", evaluation, result));
-    gnuplot.Draw("lifetime", LifetimeFigure("lifetime", {}));
+    ASSERT_TRUE(DrawsAll(folder / run, SampleEvaluation(), restarts, lifetimes, {{1, 0, 5, 5}}, restarts));
   }
-  for (const char* name : {"trajectory", "errors", "lifetime"}) {
-    for (const char* ending : {".svg", ".pdf", ".dat", ".gp"}) {
-      const std::string file = std::string(name) + ending;
-      EXPECT_EQ(ReadFile(folder / "a" / file), ReadFile(folder / "b" / file)) << file;
-    }
-    EXPECT_NE(ReadFile(folder / "a" / (std::string(name) + ".svg")).find("</svg>"), std::string::npos);
-    EXPECT_TRUE(ReadFile(folder / "a" / (std::string(name) + ".pdf")).starts_with("%PDF"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder / "a"), {}), 8 * 4);
+  for (const auto& entry : fs::directory_iterator(folder / "a")) {
+    const fs::path name = entry.path().filename();
+    const std::string bytes = ReadFile(entry.path());
+    EXPECT_EQ(bytes, ReadFile(folder / "b" / name)) << name;
+    EXPECT_EQ(name.extension() == ".svg", bytes.find("</svg>") != std::string::npos) << name;
+    EXPECT_EQ(name.extension() == ".pdf", bytes.starts_with("%PDF")) << name;
   }
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder / "a"), {}), 12);
+}
+
+/// `count` poses from `offset` on, 0.1 s and `step` apart, each off by `error` m to the right.
+Evaluation EvaluateLine(int count, double step, double error, double offset = 0.0) {
+  Trajectory truth;
+  Trajectory estimate;
+  for (int i = 0; i < count; ++i) {
+    const TimeNs t = i * (kNsPerSecond / 10);
+    truth.push_back({t, SE3({1, 0, 0, 0}, {offset, offset, offset + step * i})});
+    estimate.push_back({t, SE3({1, 0, 0, 0}, {offset + error * i, offset, offset + step * i})});
+  }
+  return Evaluate(truth, estimate, ParseAlignments("none"), {}, EvaluationOptions());
+}
+
+TEST_F(FiguresTest, DrawsWhatIsDegenerateOrExtreme) {
+  if (!HaveGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  const std::pair<const char*, Evaluation> cases[] = {
+      {"one pose", EvaluateLine(1, 0.0, 0.0)},         {"two poses", EvaluateLine(2, 1.0, 0.0)},
+      {"standstill", EvaluateLine(50, 0.0, 0.0)},      {"straight line", EvaluateLine(50, 1.0, 0.0)},
+      {"tiny errors", EvaluateLine(50, 1.0, 1e-9)},    {"huge errors", EvaluateLine(50, 1.0, 1e5)},
+      {"absurd errors", EvaluateLine(50, 1e30, 1e60)}, {"far away", EvaluateLine(50, 1e-3, 1e-4, 1e7)}};
+  for (const auto& [name, evaluation] : cases) {
+    SCOPED_TRACE(name);
+    EXPECT_TRUE(DrawsAll(folder / name, evaluation, {}, {}, {}, {}));
+  }
 }
 
 TEST_F(FiguresTest, MissingGnuplotLeavesDataAndScript) {

@@ -123,11 +123,14 @@ TEST_F(TablesTest, LifetimesAreOneTable) {
   statistics.tracks = 2;
   statistics.in_frames = {4.0, 1.0, 4.0, 5.0};
   statistics.in_seconds = {0.1, 0.025, 0.1, 0.125};
+  statistics.frame_interval_s = 0.025;
   statistics.histogram = {{3, 4, 1}, {4, 5, 0}, {5, 6, 1}};
+  statistics.histogram_seconds = {{0.0, 0.1, 1}, {0.1, 0.2, 1}};
   WriteLifetimes(folder / "lifetime.csv", statistics);
   EXPECT_EQ(ReadFile(folder / "lifetime.csv"),
             "quantity,unit,bin_low,bin_high,value\n"
             "frames,count,,,480\n"
+            "frame_interval,s,,,0.025000000\n"
             "tracks,count,,,2\n"
             "tracks_too_short,count,,,0\n"
             "tracks_cut_short,count,,,0\n"
@@ -141,7 +144,9 @@ TEST_F(TablesTest, LifetimesAreOneTable) {
             "max,s,,,0.125000000\n"
             "histogram,tracks,3,4,1\n"
             "histogram,tracks,4,5,0\n"
-            "histogram,tracks,5,6,1\n");
+            "histogram,tracks,5,6,1\n"
+            "histogram_s,tracks,0.000000000,0.100000000,1\n"
+            "histogram_s,tracks,0.100000000,0.200000000,1\n");
 }
 
 TEST_F(TablesTest, TerminalTableLinesUp) {

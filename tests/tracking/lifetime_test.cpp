@@ -47,6 +47,29 @@ TEST(Lifetime, CountsFramesAndSecondsOfTracksThatCount) {
   EXPECT_DOUBLE_EQ(statistics.in_seconds.max, 0.225);
 }
 
+TEST(Lifetime, HistogramInSecondsSharesItsBinsOutEvenly) {
+  Tracks tracks;
+  for (int i = 0; i < 120; ++i) Append(&tracks, i, 0, 3 + i);  // one track for each lifetime of 2 to 121 intervals
+  const auto statistics = ComputeLifetimes(Sorted(tracks), FrameStamps(130));
+  EXPECT_DOUBLE_EQ(statistics.frame_interval_s, 0.025);
+  const auto& bins = statistics.histogram_seconds;
+  ASSERT_EQ(bins.size(), 25u);  // of 5 intervals
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    EXPECT_NEAR(bins[i].low, 0.125 * static_cast<double>(i), 1e-12);
+    EXPECT_NEAR(bins[i].high, bins[i].low + 0.125, 1e-12);
+    EXPECT_EQ(bins[i].tracks, i == 0 ? 3 : i + 1 < bins.size() ? 5 : 2) << i;
+  }
+}
+
+TEST(Lifetime, NeedsNoFramesForSeconds) {
+  const Tracks tracks{{1, 0, 0, 0}, {1, 3, 0, 0}, {1, 700'000'003, 0, 0}};
+  const auto statistics = ComputeLifetimes(tracks, {});
+  EXPECT_EQ(statistics.frame_interval_s, 0.0);
+  ASSERT_FALSE(statistics.histogram_seconds.empty());
+  EXPECT_LE(statistics.histogram_seconds.size(), 60u);
+  EXPECT_EQ(statistics.histogram_seconds.back().tracks, 1);
+}
+
 TEST(Lifetime, TakesTheMeanOfTheTwoMiddleValuesAsMedian) {
   Tracks tracks;
   Append(&tracks, 1, 0, 4);

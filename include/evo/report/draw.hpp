@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "evo/core/time.hpp"
@@ -35,8 +37,14 @@ void DrawLine(Canvas* canvas, const Eigen::Vector2d& a, const Eigen::Vector2d& b
 void DrawCircle(Canvas* canvas, const Eigen::Vector2d& center, double radius, Color color, double thickness = 1.0);
 void DrawDisc(Canvas* canvas, const Eigen::Vector2d& center, double radius, Color color);
 
+/// Black text on a white box whose upper left corner is (x, y); `height` of a capital in px.
+void DrawLabel(Canvas* canvas, int x, int y, const std::string& text, int height);
+
+/// Equally large canvases row by row from the upper left, `columns` beside each other, with grey gaps of `gap` px.
+Canvas Sheet(std::span<const Canvas> panels, int columns, int gap);
+
 enum class PolarityColors {
-  kRedBlue,    ///< brighter red, darker blue
+  kRedBlue,    ///< brighter red, darker blue, both pale, so that tracks stand out
   kLightDark,  ///< brighter light grey, darker dark grey, for print
 };
 
@@ -53,7 +61,7 @@ struct TrackDrawing {
   int zoom = 1;               ///< as for DrawEvents
 };
 
-/// The tracks alive at `t`, each a dot at its last position up to `t` with its tail of earlier ones.
+/// The tracks alive at `t`, each a dot at its last position up to `t` with its tail of earlier ones, outlined in white.
 void DrawTracks(Canvas* canvas, const Tracks& tracks, TimeNs t, const TrackDrawing& drawing);
 
 }  // namespace evo

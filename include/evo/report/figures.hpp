@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "evo/evaluation/evaluation.hpp"
@@ -9,15 +10,35 @@
 namespace evo {
 
 // `name` is the one that the figure is drawn under, see Gnuplot::Draw. Colours are those of Okabe and Ito, which
-// colour-blind readers tell apart; lines also differ in dash and width for black-and-white print.
+// colour-blind readers tell apart; lines also differ in dash and width for black-and-white print. Curves are broken
+// where poses are missing for longer than `evaluation.longest_gap`, and such gaps are shaded. `restarts` are the
+// stamps, as written in the estimate, of the poses at which the odometry started anew; they are marked too.
 
-/// Truth and aligned estimate seen from above, in m, equal axes, the start marked. The estimate is broken at gaps.
+/// Truth and aligned estimate seen from above, in m, equal axes, the start marked.
 Figure TrajectoryFigure(const std::string& name, const Evaluation& evaluation, const AlignedEvaluation& result);
 
-/// Longitudinal, lateral (signed) and planar error over time, in m and in % of the path.
-Figure ErrorFigure(const std::string& name, const Evaluation& evaluation, const AlignedEvaluation& result);
+/// x, y and z of truth and aligned estimate over time, in m, in the truth's world frame, one panel each.
+Figure AxesFigure(const std::string& name, const Evaluation& evaluation, const AlignedEvaluation& result,
+                  std::span<const TimeNs> restarts);
+
+/// What errors are drawn over: the time since the start of the interval or the distance that the truth has travelled.
+enum class ErrorAxis { kTime, kDistance };
+
+/// Longitudinal, lateral (signed) and planar error in one panel, the vertical one in another, in m and % of the path.
+Figure ErrorFigure(const std::string& name, const Evaluation& evaluation, const AlignedEvaluation& result,
+                   ErrorAxis axis, std::span<const TimeNs> restarts);
+
+/// Local scale over time: 1 where the estimate has the scale of the alignment, more where it is too short.
+Figure ScaleDriftFigure(const std::string& name, const Evaluation& evaluation, const AlignedEvaluation& result,
+                        std::span<const TimeNs> restarts);
 
 /// Distribution of track lifetimes in frames with their mean.
 Figure LifetimeFigure(const std::string& name, const LifetimeStatistics& statistics);
+/// The same in seconds.
+Figure LifetimeSecondsFigure(const std::string& name, const LifetimeStatistics& statistics);
+
+/// Number of features seen in each frame over the time since the first of `frame_stamps`, with the mean over the
+/// frames.
+Figure LiveFeaturesFigure(const std::string& name, const Tracks& tracks, std::span<const TimeNs> frame_stamps);
 
 }  // namespace evo

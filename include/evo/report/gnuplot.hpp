@@ -8,7 +8,7 @@ namespace evo {
 /// A drawing in gnuplot's language.
 struct Figure {
   std::string data;    ///< text of NAME.dat, which `script` may read by that name
-  std::string script;  ///< everything but terminals and outputs; ends with one `plot` command
+  std::string script;  ///< everything but terminals and outputs; run once for each of them, after a `reset`
   int width = 900;     ///< px of the SVG; the PDF has the same shape, 7 inches wide
   int height = 500;    ///< px
 };

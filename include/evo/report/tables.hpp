@@ -40,8 +40,9 @@ void WriteJson(const std::filesystem::path& path, const std::vector<TableRow>& r
 void WriteErrors(const std::filesystem::path& path, const std::vector<PoseError>& errors, bool has_stamps);
 
 /// lifetime.csv: columns `quantity,unit,bin_low,bin_high,value`. First the summary, whose bin columns are empty
-/// (frames, tracks, tracks_too_short, tracks_cut_short; mean, standard_deviation, median, max in frames and in s), then
-/// one row "histogram" a bin: `value` tracks live bin_low frames or more but fewer than bin_high.
+/// (frames, frame_interval, tracks, tracks_too_short, tracks_cut_short; mean, standard_deviation, median, max in frames
+/// and in s), then one row "histogram" a bin: `value` tracks live bin_low frames or more but fewer than bin_high; then
+/// the same in seconds, "histogram_s".
 void WriteLifetimes(const std::filesystem::path& path, const LifetimeStatistics& statistics);
 
 /// The summary for people: a few aligned lines that end with a newline.

@@ -27,9 +27,17 @@ struct LifetimeBin {
   std::int64_t tracks = 0;
 };
 
+/// Tracks that live `low` seconds or more but less than `high`.
+struct LifetimeSecondsBin {
+  double low = 0.0;
+  double high = 0.0;
+  std::int64_t tracks = 0;
+};
+
 /// How long features were followed.
 struct LifetimeStatistics {
   std::int64_t frames = 0;            ///< frames of the recording
+  double frame_interval_s = 0.0;      ///< median time from frame to frame; 0 where there are not two
   std::int64_t tracks = 0;            ///< tracks that count: kFewestFrames observations or more
   std::int64_t tracks_too_short = 0;  ///< tracks with fewer, left out of everything below
   std::int64_t tracks_cut_short = 0;  ///< counted tracks still alive in the last frame: they would have lived longer
@@ -37,6 +45,9 @@ struct LifetimeStatistics {
   LifetimeMoments in_seconds;         ///< last stamp of a track minus its first
   /// Without holes from kFewestFrames to past the longest track; equal widths of 1, 2, 5, 10, 20, ... frames.
   std::vector<LifetimeBin> histogram;
+  /// Without holes from 0 to past the longest track; equal widths of 1, 2, 5, 10, 20, ... frame intervals, so that all
+  /// bins hold equally many of the lifetimes that there can be.
+  std::vector<LifetimeSecondsBin> histogram_seconds;
 };
 
 /// `frame_stamps` are those of all frames of the recording, ascending, those without any track included.

@@ -1,0 +1,75 @@
+#include "app/event_drawing.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <regex>
+
+#include "evo/report/png.hpp"
+
+namespace evo::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kZoom = 3;
+constexpr TimeNs kDrawnEvents = 10'000'000;  // an exposure that shows edges about as sharp as the tracker sees them
+constexpr std::size_t kFrames = 4;
+constexpr int kColumns = 2;
+constexpr int kGap = 2 * kZoom;          // px between the frames of a sheet
+constexpr int kLabelHeight = 8 * kZoom;  // px
+
+std::string Format(const char* format, double seconds) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, seconds);
+  return text;
+}
+
+Canvas DrawFrame(const TrackingView& view) {
+  EventColumns events;
+  view.history.ForEachBetween(
+      view.t - kDrawnEvents / 2, view.t + kDrawnEvents / 2, [&](int x, int y, TimeNs t, std::int8_t polarity) {
+        events.push_back(t, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), polarity);
+      });
+  Canvas canvas = DrawEvents(events, view.history.width(), view.history.height(), PolarityColors::kRedBlue, kZoom);
+  TrackDrawing drawing;
+  drawing.zoom = kZoom;
+  drawing.alive = 0;
+  DrawTracks(&canvas, view.tracks, view.t, drawing);
+  return canvas;
+}
+
+}  // namespace
+
+void EventDrawing::Observe(const TrackingView& view) {
+  if (frames_.empty()) {
+    if (!next_ || view.t < *next_) return;
+    next_ = schedule_.every ? std::optional(std::max(*next_ + *schedule_.every, view.t)) : std::nullopt;
+  }
+  frames_.push_back(DrawFrame(view));
+  stamps_.push_back(view.t);
+  WritePng(folder_ / ("frame_" + Format("%08.3f", ToSeconds(view.t - start_)) + "s.png"), frames_.back());
+  if (frames_.size() == kFrames) WriteSheet();
+}
+
+void EventDrawing::WriteSheet() {
+  for (std::size_t i = 0; i < kFrames; ++i) {
+    DrawLabel(&frames_[i], 0, 0, Format("t = %.3f s", ToSeconds(stamps_[i] - start_)), kLabelHeight);
+  }
+  WritePng(folder_ / ("four_frames_" + Format("%08.3f", ToSeconds(stamps_.front() - start_)) + "s.png"),
+           Sheet(frames_, kColumns, kGap));
+  frames_.clear();
+  stamps_.clear();
+}
+
+void RemoveDrawings(const fs::path& folder) {
+  static const std::regex kDrawing(R"((four_frames|frame)_\d{4,}\.\d{3}s\.png)");
+  std::error_code ignored;
+  std::vector<fs::path> drawings;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    if (std::regex_match(entry.path().filename().string(), kDrawing)) drawings.push_back(entry.path());
+  }
+  for (const auto& drawing : drawings) fs::remove(drawing, ignored);
+}
+
+}  // namespace evo::app
