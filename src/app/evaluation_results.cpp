@@ -22,12 +22,12 @@ std::string Suffix(std::size_t index, const Alignment& alignment) {
   return suffix;
 }
 
-void WarnOfWhatIsMissing(const Evaluation& evaluation) {
+void SayWhatIsMissing(const Evaluation& evaluation) {
   for (const auto& reason : evaluation.left_out) spdlog::warn("left out of the report: {}", reason);
   if (evaluation.alignments.empty()) return;
   for (const auto& rpe : evaluation.alignments.front().rpe) {
     if (rpe.relations.front().statistics.count > 0) continue;
-    spdlog::warn("no relative errors over {} ({} pairs): {}", rpe.delta.name, rpe.pairs,
+    spdlog::debug("no relative errors over {} ({} pairs): {}", rpe.delta.name, rpe.pairs,
                  evaluation.has_stamps || rpe.delta.unit != DeltaUnit::kSeconds
                      ? "the way is too short, or the tolerance too small"
                      : "the files have no stamps");
@@ -60,7 +60,7 @@ std::vector<std::string> EvaluationResultNames(std::span<const Alignment> alignm
 
 void WriteEvaluationResults(const std::filesystem::path& folder, const std::string& sequence,
                             const Evaluation& evaluation, bool with_plots, const Restarts& restarts) {
-  WarnOfWhatIsMissing(evaluation);
+  SayWhatIsMissing(evaluation);
   if (evaluation.alignments.empty()) return;
   const auto rebootstraps = restarts ? std::optional(static_cast<std::int64_t>(restarts->size())) : std::nullopt;
   const auto rows = SummaryRows(sequence, evaluation, rebootstraps);

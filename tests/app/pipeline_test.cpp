@@ -103,12 +103,9 @@ TEST_F(PipelineTest, SameBytesForAnyNumberOfThreadsAndWithoutTheTruth) {
   }
 }
 
-TEST_F(PipelineTest, SameBytesOnAProcessorWithoutAvx2) {
-  const std::string older =
-      "export OPENCV_CPU_DISABLE=AVX2,FMA3 "
-      "GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA,-AVX2_Usable,-FMA_Usable;";
+TEST_F(PipelineTest, SameBytesWhateverVariantsOpenCvWouldChoose) {
   ASSERT_EQ(Run("run " + Blind() + "--to 0.9" + To("this")), 0) << err;
-  ASSERT_EQ(Run("run " + Blind() + "--to 0.9" + To("older"), older), 0) << err;
+  ASSERT_EQ(Run("run " + Blind() + "--to 0.9" + To("older"), "export OPENCV_CPU_DISABLE=AVX2,FMA3;"), 0) << err;
   ExpectSameBytes("this", "older", {"tracks.txt", "lifetime.csv", "trajectory.txt", "map.ply"});
 }
 
