@@ -75,7 +75,6 @@ TEST_F(CommandLineTest, RelativeErrorsOverWhatWasAskedFor) {
 
 TEST_F(CommandLineTest, ADeltaLongerThanTheWayIsMissedOrRefused) {
   ASSERT_EQ(Run(Evaluate("gt.txt", "gt.txt", "--align none --set evaluation.rpe_deltas=1f,9000m")), 0) << err;
-  EXPECT_NE(err.find("9000m"), std::string::npos) << err;
   EXPECT_NE(ReadFile(folder / "result" / "metrics.csv").find(",9000,m,consecutive,0,,,,,,,\n"), std::string::npos);
   EXPECT_EQ(Refusal(Evaluate("gt.txt", "gt.txt", "--align none --rpe 9000m --force")), 5);
   EXPECT_NE(err.find("9000m"), std::string::npos) << err;
