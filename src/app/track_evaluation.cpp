@@ -29,8 +29,7 @@ Truth FindTruth(const TrackEvaluationArguments& arguments, const TruePoses& pose
   }
   const Camera camera = OpenCamera(arguments.calibration, arguments.sensor);
   const Trajectory trajectory = ReadGroundTruth(poses.path, poses.source);
-  const bool with_depth =
-      arguments.truth == "depth" || (arguments.truth == "auto" && HasDepthMaps(poses.path));
+  const bool with_depth = arguments.truth == "depth" || (arguments.truth == "auto" && HasDepthMaps(poses.path));
   if (!with_depth) return {"triangulated", TruthFromTriangulation(tracks, trajectory, camera, max_gap)};
   const DepthMapReader maps(poses.path);
   return {"depth", TruthFromDepth(tracks, trajectory, camera, maps, max_gap, config.track_truth)};

@@ -85,7 +85,8 @@ double ExpectedAgeNormalized(const std::vector<TrackErrors>& tracks, double thre
 
 ThresholdAccuracy Summarize(const std::vector<TrackErrors>& tracks, double threshold_px) {
   std::vector<double> errors;
-  std::vector<double> track_errors;
+  std::vector<double> track_means;
+  std::vector<double> track_medians;
   std::vector<double> ages;
   double judged = 0.0;
   double exceeding = 0.0;
@@ -98,7 +99,9 @@ ThresholdAccuracy Summarize(const std::vector<TrackErrors>& tracks, double thres
     exceeding += within.positions < track.errors_px.size() ? 1.0 : 0.0;
     if (!(within.age_s > 0.0)) continue;
     ages.push_back(within.age_s);
-    track_errors.push_back(ComputeStatistics(good).mean);
+    const Statistics error = ComputeStatistics(good);
+    track_means.push_back(error.mean);
+    track_medians.push_back(error.median);
   }
   ThresholdAccuracy result;
   result.threshold_px = threshold_px;
@@ -108,7 +111,8 @@ ThresholdAccuracy Summarize(const std::vector<TrackErrors>& tracks, double thres
   result.error_p75_px = Quantile(errors, 0.75);
   result.error_p95_px = Quantile(errors, 0.95);
   result.error_p99_px = Quantile(errors, 0.99);
-  result.track_error_mean_px = Mean(track_errors);
+  result.track_error_mean_px = Mean(track_means);
+  result.track_error_median_px = ComputeStatistics(track_medians).median;
   result.exceeding_share = exceeding / judged;
   result.outlier_share = 1.0 - static_cast<double>(ages.size()) / judged;
   result.feature_age_s = ComputeStatistics(ages);
@@ -167,10 +171,11 @@ void CheckThresholds(std::vector<double>* thresholds_px) {
 void RequireJudged(const TrackAccuracy& accuracy) {
   if (Count(accuracy, TrackVerdict::kJudged) > 0) return;
   std::string reasons;
-  for (const auto& [verdict, reason] : {std::pair{TrackVerdict::kNoTruth, " without truth at their stamps or of their ids"},
-                                        {TrackVerdict::kNoDepth, " without a depth where they begin"},
-                                        {TrackVerdict::kNotTriangulated, " that meet in no point"},
-                                        {TrackVerdict::kTooShort, " too short"}}) {
+  for (const auto& [verdict, reason] :
+       {std::pair{TrackVerdict::kNoTruth, " without truth at their stamps or of their ids"},
+        {TrackVerdict::kNoDepth, " without a depth where they begin"},
+        {TrackVerdict::kNotTriangulated, " that meet in no point"},
+        {TrackVerdict::kTooShort, " too short"}}) {
     const std::int64_t count = Count(accuracy, verdict);
     if (count > 0) reasons += (reasons.empty() ? "" : ", ") + std::to_string(count) + reason;
   }
@@ -197,8 +202,9 @@ TrackAccuracy EvaluateTracks(const std::vector<FeatureTrack>& tracks, const std:
   thresholds_px.push_back(kWholeTracks);
   for (const double threshold : thresholds_px) accuracy.thresholds.push_back(Summarize(accuracy.tracks, threshold));
   for (int threshold = 1; threshold <= kLargestThreshold; ++threshold) {
-    accuracy.expected_age_normalized += ExpectedAgeNormalized(accuracy.tracks, threshold) / kLargestThreshold;
+    accuracy.expected_age_normalized += ExpectedAgeNormalized(accuracy.tracks, threshold);
   }
+  accuracy.expected_age_normalized /= kLargestThreshold;
   accuracy.error_over_age = ErrorOverAge(accuracy.tracks);
   return accuracy;
 }

@@ -46,8 +46,8 @@ Figure TrackErrorFigure(const std::string& name, const TrackAccuracy& accuracy) 
   script << kStyle << "set xrange [0:" << Number(end) << "]\n"
          << "set xlabel 'age of the track (s)'\n"
          << "set yrange [0:" << Number(1.1 * highest) << "]\n"
-         << "set ylabel '" << (accuracy.truth == "triangulated" ? "residual of the triangulation" : "error of the track")
-         << " (px)'\n"
+         << "set ylabel '"
+         << (accuracy.truth == "triangulated" ? "residual of the triangulation" : "error of the track") << " (px)'\n"
          << "set y2range [0:" << Number(1.1 * static_cast<double>(most)) << "]\n"
          << "set y2tics textcolor '#202020'\n"
          << "set y2label 'tracks of this age' offset 1\n"

@@ -39,8 +39,8 @@ const char* VerdictName(TrackVerdict verdict) {
 
 TableRow QualityRow(const std::string& quantity, const std::string& unit, double threshold_px, double age_low_s,
                     double age_high_s, const Value& value) {
-  return {{"quantity", quantity},   {"unit", unit},           {"threshold_px", threshold_px},
-          {"age_low_s", age_low_s}, {"age_high_s", age_high_s}, {"value", value}};
+  return {{"quantity", quantity},     {"unit", unit},  {"threshold_px", threshold_px}, {"age_low_s", age_low_s},
+          {"age_high_s", age_high_s}, {"value", value}};
 }
 
 void AppendThreshold(const ThresholdAccuracy& accuracy, std::vector<TableRow>* rows) {
@@ -60,6 +60,7 @@ void AppendThreshold(const ThresholdAccuracy& accuracy, std::vector<TableRow>* r
   add("error_p95", "px", accuracy.error_p95_px);
   add("error_p99", "px", accuracy.error_p99_px);
   add("track_error_mean", "px", accuracy.track_error_mean_px);
+  add("track_error_median", "px", accuracy.track_error_median_px);
   add("exceeding_share", "share", accuracy.exceeding_share);
   add("outlier_share", "share", accuracy.outlier_share);
   add("feature_age_mean", "s", age.mean);
@@ -139,17 +140,17 @@ std::string FormatTrackAccuracy(const TrackAccuracy& accuracy) {
     const auto count = static_cast<long long>(Count(accuracy, verdict));
     if (count > 0) text += Print("; %lld %s", count, name);
   }
-  text += "\nthreshold  error px                            feature age s    outliers  expected age\n"
-          "       px    median     mean     rmse      95 %     mean   median         %        s         %\n";
+  text +=
+      "\nthreshold   error: median   a track     mean     95 %   age: mean   median  outliers  expected age\n"
+      "       px           px        px       px       px          s        s         %         s      %\n";
   for (const auto& threshold : accuracy.thresholds) {
-    const auto& error = threshold.error_px;
     const auto& age = threshold.feature_age_s;
     const std::string name = std::isfinite(threshold.threshold_px) ? Print("%g", threshold.threshold_px) : "none";
     const double normalized = 100.0 * threshold.expected_age_normalized;
-    text += Print("%9s  %8.3f %8.3f %8.3f  %8.3f %8.3f %8.3f  %8.2f %8.3f  %8s\n", name.c_str(), error.median,
-                  error.mean, error.rmse, threshold.error_p95_px, age.mean, age.median,
-                  100.0 * threshold.outlier_share, threshold.expected_age_s,
-                  std::isfinite(normalized) ? Print("%.2f", normalized).c_str() : "-");
+    text += Print("%9s %12.3f %9.3f %8.3f %8.3f %11.3f %8.3f %9.2f %9.3f %6s\n", name.c_str(),
+                  threshold.error_px.median, threshold.track_error_median_px, threshold.error_px.mean,
+                  threshold.error_p95_px, age.mean, age.median, 100.0 * threshold.outlier_share,
+                  threshold.expected_age_s, std::isfinite(normalized) ? Print("%.1f", normalized).c_str() : "-");
   }
   return text;
 }

@@ -19,8 +19,8 @@ namespace evo {
 // track. A track is stable at a threshold if its age there is not 0. Error statistics at a threshold take only what
 // lies within the feature age.
 // Where this differs: [1] and [2] interpolate the track at the stamps of the truth, here it is the other way round; [1]
-// judges only the tracks that begin with the file, here all are judged; [2] ends the age one stamp earlier and stretches
-// asynchronous tracks over the whole true track, here a track lives until its last observation.
+// judges only the tracks that begin with the file, here all are judged; [2] ends the age one stamp earlier and
+// stretches asynchronous tracks over the whole true track, here a track lives until its last observation.
 
 /// One track and its errors.
 struct TrackErrors {
@@ -40,16 +40,17 @@ struct TrackErrors {
 
 /// All judged tracks at one threshold. NaN where there is nothing to average or a quantity is unknown.
 struct ThresholdAccuracy {
-  double threshold_px = 0.0;              ///< infinity: whole tracks
-  Statistics error_px;                    ///< over all positions within the feature ages
-  double error_p25_px = 0.0;              ///< percentiles of the same
+  double threshold_px = 0.0;  ///< infinity: whole tracks
+  Statistics error_px;        ///< over all positions within the feature ages
+  double error_p25_px = 0.0;  ///< percentiles of the same
   double error_p75_px = 0.0;
   double error_p95_px = 0.0;
   double error_p99_px = 0.0;
-  double track_error_mean_px = 0.0;       ///< mean over stable tracks of each one's mean error: "tracking error" of [2]
-  double exceeding_share = 0.0;           ///< tracks whose error exceeds the threshold at any time
-  double outlier_share = 0.0;             ///< tracks that are not stable: they exceed it at once
-  Statistics feature_age_s;               ///< over stable tracks
+  double track_error_mean_px = 0.0;    ///< mean over stable tracks of each one's mean error: "tracking error" of [2]
+  double track_error_median_px = 0.0;  ///< median over stable tracks of each one's median error
+  double exceeding_share = 0.0;        ///< tracks whose error exceeds the threshold at any time
+  double outlier_share = 0.0;          ///< tracks that are not stable: they exceed it at once
+  Statistics feature_age_s;            ///< over stable tracks
   /// Mean feature age of stable tracks times their share, "expected feature age" of [2]: the same as the mean over all
   /// tracks, outliers with 0, which is the "feature age" of [1].
   double expected_age_s = 0.0;
