@@ -165,7 +165,7 @@ void CheckThresholds(std::vector<double>* thresholds_px) {
   if (!valid || thresholds_px->empty()) {
     throw Error(ErrorKind::kUsage, "thresholds of the track error must be positive numbers of pixels");
   }
-  thresholds_px->erase(std::ranges::unique(*thresholds_px).begin(), thresholds_px->end());
+  thresholds_px->erase(std::unique(thresholds_px->begin(), thresholds_px->end()), thresholds_px->end());
 }
 
 void RequireJudged(const TrackAccuracy& accuracy) {

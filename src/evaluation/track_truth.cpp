@@ -89,6 +89,7 @@ std::vector<TrueTrack> TruthFromTriangulation(const std::vector<FeatureTrack>& t
                                               const Camera& camera, TimeNs max_gap) {
   CheckSensorFit(tracks, camera);
   std::vector<TrueTrack> results;
+  results.reserve(tracks.size());
   for (const auto& track : tracks) results.push_back(Triangulate(track, trajectory, camera, max_gap));
   return results;
 }

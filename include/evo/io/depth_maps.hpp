@@ -15,7 +15,9 @@ struct DepthMap {
   int height = 0;             ///< px
   std::vector<double> depth;  ///< height x width, row-major
 
-  double At(int x, int y) const { return depth[static_cast<std::size_t>(y * width + x)]; }
+  double At(int x, int y) const {
+    return depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+  }
 };
 
 /// Whether an MVSEC _gt.hdf5 holds depth maps of the raw left image. False for a file of another kind.
