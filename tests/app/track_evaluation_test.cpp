@@ -28,7 +28,8 @@ class TrackEvaluationTest : public EvoRunTest {
       std::vector<std::string> cells;
       std::istringstream stream(line);
       for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
-      if (cells.size() == 6 && cells[3].empty()) values[cells[0] + ' ' + cells[2].substr(0, cells[2].find('.'))] = cells[5];
+      if (cells.size() == 6 && cells[3].empty())
+        values[cells[0] + ' ' + cells[2].substr(0, cells[2].find('.'))] = cells[5];
     }
     return values;
   }
@@ -87,6 +88,8 @@ TEST_F(TrackEvaluationTest, DepthMapsGiveTheErrorAndTheTrueAge) {
   EXPECT_NEAR(std::stod(quality["error_rmse 3"]), 2.0, 1e-3);
   EXPECT_EQ(std::stod(quality["outlier_share 1"]), 1.0);
   EXPECT_NEAR(std::stod(quality["expected_feature_age_normalized 3"]), 0.5, 0.04);  // lives 1 s of 2 s
+  // Asynchronous tracks live as many frames as the odometry makes of them, 25 ms apart.
+  EXPECT_NE(ReadFile(folder / "result" / "lifetime.csv").find("\nmean,frames,,,36.750000000\n"), std::string::npos);
   EXPECT_NE(out.find("12 of 12 judged, truth: depth\n"), std::string::npos) << out;
   EXPECT_NE(ReadFile(folder / "result" / "track_errors.csv").find("\n11,1500000000.143000000,judged,"),
             std::string::npos);
@@ -154,7 +157,8 @@ TEST_F(TrackEvaluationTest, IncompleteCommandLinesAreRefused) {
        {truth, tracks, tracks + truth, tracks + calibration, truth + calibration,
         " --true-tracks " + Quote(folder / "t.txt"), tracks + truth + calibration + " --true-tracks t.txt",
         tracks + truth + calibration + " --track-truth guess", " --estimate " + Quote(folder / "t.txt"),
-        tracks + truth + calibration + " --track-thresholds 0", tracks + truth + calibration + " --track-thresholds nan",
+        tracks + truth + calibration + " --track-thresholds 0",
+        tracks + truth + calibration + " --track-thresholds nan",
         tracks + truth + calibration + " --track-thresholds a,b"}) {
     EXPECT_EQ(Refusal("evaluate" + words + To("none")), 2) << words << '\n' << err;
     EXPECT_FALSE(fs::exists(folder / "none")) << words;
@@ -168,8 +172,9 @@ TEST_F(TrackEvaluationTest, TracksAndTruthThatDoNotBelongTogetherAreRefused) {
   EXPECT_EQ(Refusal(TrueTrackArguments("1 0 5 5\n1 1 5 nan\n", "1 7 5 5\n1 8 5 5\n") + To("none")), 4);
   EXPECT_EQ(Refusal(TrueTrackArguments("1 0 5 5\n1 1 5 5\n", "") + To("none")), 4);
   const std::string arguments = SceneArguments(0.0);
-  Write("camchain.yaml", "cam0:\n  camera_model: pinhole\n  intrinsics: [100, 100, 50, 50]\n"
-                         "  distortion_model: radtan\n  distortion_coeffs: [0, 0, 0, 0]\n  resolution: [101, 101]\n");
+  Write("camchain.yaml",
+        "cam0:\n  camera_model: pinhole\n  intrinsics: [100, 100, 50, 50]\n"
+        "  distortion_model: radtan\n  distortion_coeffs: [0, 0, 0, 0]\n  resolution: [101, 101]\n");
   EXPECT_EQ(Refusal(arguments + To("none")), 4);
   EXPECT_NE(err.find("101 x 101"), std::string::npos) << err;
   EXPECT_FALSE(fs::exists(folder / "none"));

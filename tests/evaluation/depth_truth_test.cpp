@@ -43,10 +43,11 @@ class DepthTruthTest : public ::testing::Test {
 TEST_F(DepthTruthTest, PerfectTrackOnATiltedPlaneIsTheTruthWhereverItBegins) {
   TrackScene scene;
   scene.walls = {{Eigen::Vector3d(0.06, -0.03, 0.1)}};
-  scene.velocity = {0.8, 0.1, 1.5};
-  scene.turning = {0.02, -0.05, 0.1};
-  for (const double from : {0.0, 0.111, 0.524, 0.538}) {  // on a map, after one, between two
-    const Tracks track = scene.Follow(3, {80.3, 60.8}, from, from + 0.5);
+  scene.velocity = {4.0, 0.5, 6.0};
+  scene.turning = {0.2, -0.5, 1.0};
+  scene.seconds = 0.7;
+  for (const double from : {0.0, 0.111, 0.324, 0.338}) {  // on a map, after one, between two
+    const Tracks track = scene.Follow(3, {80.3, 60.8}, from, from + 0.2);
     const auto truth = Find(scene, track);
     ASSERT_EQ(truth.size(), 1u);
     EXPECT_EQ(truth[0].verdict, TrackVerdict::kJudged);

@@ -72,7 +72,8 @@ TEST(TrackAccuracy, ConstantOffsetIsTheError) {
 
 TEST(TrackAccuracy, LinearDriftEndsTheFeatureAgeWhereItCrossesTheThreshold) {
   Made made;
-  made.Add(301, 0.01, [](int i) { return 0.03 * i; }, 4.0);  // 3 px/s over 3 s
+  made.Add(
+      301, 0.01, [](int i) { return 0.03 * i; }, 4.0);  // 3 px/s over 3 s
   const auto accuracy = made.Evaluate({5.0});
   const auto& at_5px = accuracy.thresholds[0];
   EXPECT_NEAR(at_5px.feature_age_s.mean, 1.66, 1e-9);  // the last stamp before 5/3 s
@@ -97,10 +98,13 @@ TEST(TrackAccuracy, ATrackThatComesBackIsNotWithinTheThresholdAgain) {
 
 TEST(TrackAccuracy, ExpectedAgeIsTheAgeOfStableTracksTimesTheirShare) {
   Made made;
-  made.Add(11, 0.1, Zero, 2.0);                              // half of its true life
-  made.Add(11, 0.1, [](int i) { return 100.0 * i; }, 1.0);   // jumps away at once
-  made.Add(11, 0.1, [](int) { return 20.0; }, 1.0);          // was never there
-  made.Add(6, 0.1, [](int i) { return i < 3 ? 0.0 : 9.0; }, 0.5);
+  made.Add(11, 0.1, Zero, 2.0);  // half of its true life
+  made.Add(
+      11, 0.1, [](int i) { return 100.0 * i; }, 1.0);  // jumps away at once
+  made.Add(
+      11, 0.1, [](int) { return 20.0; }, 1.0);  // was never there
+  made.Add(
+      6, 0.1, [](int i) { return i < 3 ? 0.0 : 9.0; }, 0.5);
   const auto& at_5px = made.Evaluate({5.0}).thresholds[0];
   EXPECT_DOUBLE_EQ(at_5px.outlier_share, 0.5);
   EXPECT_DOUBLE_EQ(at_5px.exceeding_share, 0.75);
@@ -112,7 +116,8 @@ TEST(TrackAccuracy, ExpectedAgeIsTheAgeOfStableTracksTimesTheirShare) {
 
 TEST(TrackAccuracy, NormalizedExpectedAgeIsTheMeanOverThresholdsOf1To31Px) {
   Made made;
-  made.Add(41, 0.1, [](int i) { return i - 0.5; }, 4.0);  // at T px its age is T / 10 s
+  made.Add(
+      41, 0.1, [](int i) { return i - 0.5; }, 4.0);  // at T px its age is T / 10 s
   EXPECT_NEAR(made.Evaluate({5.0}).expected_age_normalized, 16.0 / 40.0, 1e-9);
 }
 

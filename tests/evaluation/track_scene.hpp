@@ -20,7 +20,13 @@ inline Camera PlainCamera() { return Camera({Distortion::kRadTan, 201, 151, 100.
 
 /// The left DAVIS of MVSEC's outdoor_day.
 inline Camera MvsecCamera() {
-  return Camera({Distortion::kEquidistant, 346, 260, 223.994, 223.618, 170.768, 128.187,
+  return Camera({Distortion::kEquidistant,
+                 346,
+                 260,
+                 223.994,
+                 223.618,
+                 170.768,
+                 128.187,
                  {-0.0339044, -0.0153726, -0.0222847, 0.0069204, 0.0}});
 }
 
