@@ -103,8 +103,8 @@ void RunEvaluate(const EvaluateArguments& arguments, const std::vector<std::stri
   std::string summary;
   if (with_trajectory) summary += EvaluateTrajectory(arguments, alignments, interval, config, &record);
   if (with_tracks) {
-    summary += RunTrackEvaluation(arguments.tracks, {arguments.ground_truth, arguments.common.Source()}, config,
-                                  arguments.out, !arguments.no_plots, &record);
+    summary += RunTrackEvaluation(arguments.tracks, {arguments.ground_truth, arguments.common.Source(), interval},
+                                  config, arguments.out, !arguments.no_plots, &record);
   }
   WriteManifest(std::filesystem::path(arguments.out) / "manifest.json", record.manifest);
   std::cout << summary;

@@ -35,6 +35,17 @@ Truth FindTruth(const TrackEvaluationArguments& arguments, const TruePoses& pose
   return {"depth", TruthFromDepth(tracks, trajectory, camera, maps, max_gap, config.track_truth)};
 }
 
+/// The tracks of the interval, in the clock of the truth.
+Tracks ReadInterval(const std::filesystem::path& path, const EvaluationInterval& interval, TimeNs clock_offset) {
+  Tracks tracks = ReadTracks(path);
+  for (auto& observation : tracks) observation.t += clock_offset;
+  std::erase_if(tracks, [&](const TrackObservation& observation) {
+    return (interval.from && observation.t < *interval.from) || (interval.to && observation.t > *interval.to);
+  });
+  if (tracks.empty()) throw Error(ErrorKind::kNothingToDo, path.string() + ": no tracks in the interval to be judged");
+  return tracks;
+}
+
 LifetimeStatistics FindLifetimes(const Tracks& tracks, const ResamplingOptions& options) {
   const Tracks in_frames = AreSynchronous(tracks) ? tracks : Resample(tracks, options);
   std::vector<TimeNs> frames;
@@ -93,9 +104,9 @@ std::string RunTrackEvaluation(const TrackEvaluationArguments& arguments, const 
   record->AddInput("tracks", arguments.tracks);
   if (!arguments.true_tracks.empty()) record->AddInput("true_tracks", arguments.true_tracks);
   if (!arguments.calibration.empty()) record->AddInput("calibration", arguments.calibration);
-  Tracks tracks = record->Time("read_tracks", [&] { return ReadTracks(arguments.tracks); });
   const TimeNs offset = FromSeconds(config.evaluation.association.estimate_clock_offset_s);
-  for (auto& observation : tracks) observation.t += offset;
+  const Tracks tracks =
+      record->Time("read_tracks", [&] { return ReadInterval(arguments.tracks, poses.interval, offset); });
   const auto accuracy = record->Time("evaluate_tracks", [&] {
     return NamingPlace(arguments.tracks, [&] {
       const auto grouped = GroupById(tracks);

@@ -25,10 +25,11 @@ struct TrackEvaluationArguments {
 /// command's own option for the true poses.
 void AddTrackEvaluationOptions(CLI::App& command, TrackEvaluationArguments& arguments, CLI::Option* ground_truth);
 
-/// The poses to judge by; the path is empty if there are none.
+/// The poses to judge by, whose path is empty if there are none, and when, in the clock of the truth.
 struct TruePoses {
   std::filesystem::path path;
   GroundTruthSource source = GroundTruthSource::kLoam;
+  EvaluationInterval interval;
 };
 
 /// track_quality.csv, track_errors.csv and lifetime.csv.

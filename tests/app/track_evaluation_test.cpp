@@ -124,6 +124,15 @@ TEST_F(TrackEvaluationTest, TheClockOffsetMovesTheTracks) {
   EXPECT_EQ(Quality("moved")["error_max "], "0.000000000");
 }
 
+TEST_F(TrackEvaluationTest, OnlyTheIntervalIsJudged) {
+  const std::string arguments =
+      TrueTrackArguments("1 0.0 10 0\n1 0.1 13 0\n1 0.2 13 0\n1 0.3 99 0\n", "1 0 10 0\n1 0.4 10 0\n");
+  ASSERT_EQ(Run(arguments + " --from-stamp 0.1 --to-stamp 0.2" + To("part")), 0) << err;
+  EXPECT_EQ(Quality("part")["compared_positions "], "2");
+  EXPECT_EQ(Quality("part")["error_max "], "3.000000000");
+  EXPECT_EQ(Refusal(arguments + " --from-stamp 7" + To("none")), 5);
+}
+
 TEST_F(TrackEvaluationTest, TrajectoryAndTracksTogetherLeaveOneManifest) {
   const std::string arguments = SceneArguments(0.0);
   WriteTum(folder / "estimate.txt", testing::TrackScene().Poses());
