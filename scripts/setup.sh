@@ -10,6 +10,7 @@ packages=(
   libpng-dev libspdlog-dev nlohmann-json3-dev
   libgtest-dev # the tests
   gnuplot-nox  # the plots, at run time
+  make         # scripts/sweep.mk
 )
 
 is_installed() {

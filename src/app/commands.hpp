@@ -20,6 +20,7 @@ Command AddRunCommand(CLI::App& app);
 Command AddTrackCommand(CLI::App& app);
 Command AddOdometryCommand(CLI::App& app);
 Command AddEvaluateCommand(CLI::App& app);
+Command AddReportCommand(CLI::App& app);
 Command AddInfoCommand(CLI::App& app);
 Command AddConfigCommand(CLI::App& app);
 

@@ -1,7 +1,11 @@
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <iterator>
 #include <memory>
+#include <optional>
+#include <set>
+#include <utility>
 
 #include "app/commands.hpp"
 #include "app/config.hpp"
@@ -13,6 +17,7 @@
 #include "app/run_record.hpp"
 #include "app/track_evaluation.hpp"
 #include "evo/core/error.hpp"
+#include "evo/io/file_kind.hpp"
 #include "evo/report/tables.hpp"
 
 namespace evo::app {
@@ -26,7 +31,13 @@ struct EvaluateArguments {
   TrackEvaluationArguments tracks;
   std::string align = "origin-scale,sim3";
   std::string association;
+  std::optional<double> max_difference_s;
+  std::optional<double> time_offset_s;
+  std::string rpe;
+  std::string rpe_pairs;
+  std::string project;
   std::string up;
+  std::string forward;
   std::string from;
   std::string to;
   std::string sequence;
@@ -59,19 +70,69 @@ void RequireInputs(const EvaluateArguments& arguments) {
   }
 }
 
+/// NaN is in no range.
+void SetSeconds(const std::string& name, std::optional<double> given, double lowest, double highest, double* option) {
+  if (!given) return;
+  if (!(*given >= lowest && *given <= highest)) {
+    throw Error(ErrorKind::kUsage, name + " must be a number of seconds from " + std::to_string(std::lround(lowest)) +
+                                       " to " + std::to_string(std::lround(highest)));
+  }
+  *option = *given;
+}
+
+/// The options that were given win over the configuration.
+void Override(const EvaluateArguments& arguments, EvaluationOptions* options) {
+  const auto set = [](const auto& given, auto* option) {
+    if (!given.empty()) *option = given;
+  };
+  set(arguments.association, &options->association.association);
+  set(arguments.rpe, &options->rpe.deltas);
+  set(arguments.rpe_pairs, &options->rpe.pairs);
+  set(arguments.project, &options->project);
+  set(arguments.up, &options->up);
+  set(arguments.forward, &options->forward);
+  options->rpe.required = !arguments.rpe.empty();
+  SetSeconds("--max-difference", arguments.max_difference_s, 0.0, 1e3, &options->association.max_difference_s);
+  SetSeconds("--time-offset", arguments.time_offset_s, -1e9, 1e9, &options->association.estimate_clock_offset_s);
+  ParseDeltas(options->rpe.deltas);  // refuses a wrong --rpe before anything is read
+}
+
+struct Inputs {
+  Trajectory estimate;
+  Trajectory truth;
+};
+
+/// Two files without stamps are compared pose by pose; a file with stamps and one without have nothing in common.
+Inputs ReadInputs(const EvaluateArguments& arguments, AssociationOptions* association) {
+  const bool estimate_is_kitti = DetectKind(arguments.estimate) == FileKind::kKittiPoses;
+  const bool truth_is_kitti = DetectKind(arguments.ground_truth) == FileKind::kKittiPoses;
+  if (estimate_is_kitti != truth_is_kitti) {
+    throw Error(ErrorKind::kInput, (estimate_is_kitti ? arguments.estimate : arguments.ground_truth) +
+                                       ": its poses have no stamps, those of the other file have; give two files with "
+                                       "stamps or two without");
+  }
+  if (!estimate_is_kitti) {
+    return {ReadTum(arguments.estimate), ReadGroundTruth(arguments.ground_truth, arguments.common.Source())};
+  }
+  if (!arguments.association.empty() || arguments.max_difference_s || arguments.time_offset_s) {
+    throw Error(ErrorKind::kUsage, arguments.estimate +
+                                       ": its poses have no stamps and are compared one by one; leave out "
+                                       "--association, --max-difference and --time-offset");
+  }
+  *association = {};
+  association->association = "index";
+  return {ReadKitti(arguments.estimate), ReadKitti(arguments.ground_truth)};
+}
+
 /// Writes the results and returns the summary for people.
 std::string EvaluateTrajectory(const EvaluateArguments& arguments, const std::vector<Alignment>& alignments,
                                const EvaluationInterval& interval, const Config& config, RunRecord* record) {
   record->AddInput("estimate", arguments.estimate);
-  Trajectory estimate;
-  Trajectory truth;
-  record->Time("read", [&] {
-    estimate = ReadTum(arguments.estimate);
-    truth = ReadGroundTruth(arguments.ground_truth, arguments.common.Source());
-  });
+  EvaluationOptions options = config.evaluation;
+  const auto [estimate, truth] = record->Time("read", [&] { return ReadInputs(arguments, &options.association); });
   const auto evaluation = record->Time("evaluate", [&] {
     return NamingPlace(arguments.estimate + " against " + arguments.ground_truth,
-                       [&] { return Evaluate(truth, estimate, alignments, interval, config.evaluation); });
+                       [&, &e = estimate, &t = truth] { return Evaluate(t, e, alignments, interval, options); });
   });
   const std::string sequence = arguments.sequence.empty() ? SequenceName(arguments.ground_truth) : arguments.sequence;
   record->Time("write", [&] { WriteEvaluationResults(arguments.out, sequence, evaluation, !arguments.no_plots); });
@@ -86,8 +147,7 @@ void RunEvaluate(const EvaluateArguments& arguments, const std::vector<std::stri
   RequireInputs(arguments);
   Config config;
   arguments.common.Apply(&config);
-  if (!arguments.association.empty()) config.evaluation.association.association = arguments.association;
-  if (!arguments.up.empty()) config.evaluation.up = arguments.up;
+  Override(arguments, &config.evaluation);
   const auto alignments = ParseAlignments(arguments.align);
   const auto interval = ParseInterval(arguments);
   const bool with_trajectory = !arguments.estimate.empty();
@@ -110,25 +170,55 @@ void RunEvaluate(const EvaluateArguments& arguments, const std::vector<std::stri
   std::cout << summary;
 }
 
+void AddComparisonOptions(CLI::App& command, EvaluateArguments& arguments) {
+  const auto add_choice = [&](const char* name, std::string& value, std::set<std::string> choices, const char* type,
+                              const char* help) {
+    command.add_option(name, value, help)->check(CLI::IsMember(std::move(choices)).description(""))->type_name(type);
+  };
+  add_choice(
+      "--association", arguments.association, {"interpolate", "nearest", "unique", "nearest-truth"},
+      "interpolate|nearest|unique|nearest-truth",
+      "how poses find each other: interpolate the truth (default), evo's nearest, TUM's unique (evaluate_ate) or "
+      "nearest-truth (evaluate_rpe)");
+  command
+      .add_option("--max-difference", arguments.max_difference_s,
+                  "stamps farther apart form no pair, unless interpolated; default: 0.01 nearest, 0.02 unique, twice "
+                  "the truth's interval nearest-truth")
+      ->type_name("S");
+  command
+      .add_option("--time-offset", arguments.time_offset_s, "added to the estimate's stamps; write --time-offset=-0.1")
+      ->type_name("S");
+  command
+      .add_option(
+          "--rpe", arguments.rpe,
+          "distances of relative errors: frames, s, m, deg or rad, for example 1f,0.5s,10m,5deg,0.1rad; default: "
+          "1f,1s,10m")
+      ->type_name("LIST");
+  add_choice("--rpe-pairs", arguments.rpe_pairs, {"consecutive", "all", "closest"}, "consecutive|all|closest",
+             "pairs end to end (default), from every pose, or as TUM's evaluate_rpe takes them");
+  add_choice("--project", arguments.project, {"none", "xy", "xz", "yz"}, "none|xy|xz|yz",
+             "plane of the truth's world to confine the errors to");
+  add_choice("--up", arguments.up, {"auto", "x", "y", "z", "-x", "-y", "-z"}, "auto|[-]x|y|z",
+             "axis of the truth's world that points up; write --up=-y");
+  add_choice("--forward", arguments.forward, {"travel", "body"}, "travel|body",
+             "longitudinal is along the direction of travel (default) or the true camera's axis");
+}
+
 }  // namespace
 
 Command AddEvaluateCommand(CLI::App& app) {
   auto arguments = std::make_shared<EvaluateArguments>();
   auto* const parser = app.add_subcommand("evaluate", "Compare a trajectory, or feature tracks, with the ground truth");
-  auto* const ground_truth =
-      parser->add_option("--ground-truth", arguments->ground_truth, "MVSEC _gt.hdf5, UZH groundtruth.txt or TUM text")
-          ->type_name("FILE");
-  parser->add_option("--estimate", arguments->estimate, "estimated trajectory, TUM text")
+  auto* const ground_truth = parser
+                                 ->add_option("--ground-truth", arguments->ground_truth,
+                                              "MVSEC _gt.hdf5, UZH groundtruth.txt, TUM text or KITTI poses")
+                                 ->type_name("FILE");
+  parser->add_option("--estimate", arguments->estimate, "estimated trajectory, TUM text or KITTI poses")
       ->type_name("FILE")
       ->needs(ground_truth);
   AddTrackEvaluationOptions(*parser, arguments->tracks, ground_truth);
   AddAlignmentOption(*parser, arguments->align);
-  parser->add_option("--association", arguments->association, "interpolate the truth (default) or take evo's nearest")
-      ->check(CLI::IsMember({"interpolate", "nearest"}).description(""))
-      ->type_name("interpolate|nearest");
-  parser->add_option("--up", arguments->up, "axis of the truth's world that points up; write --up=-y")
-      ->check(CLI::IsMember({"auto", "x", "y", "z", "-x", "-y", "-z"}).description(""))
-      ->type_name("auto|[-]x|y|z");
+  AddComparisonOptions(*parser, *arguments);
   parser->add_option("--from-stamp", arguments->from, "judge only from this stamp of the ground truth on")
       ->type_name("S");
   parser->add_option("--to-stamp", arguments->to, "judge only up to this stamp")->type_name("S");

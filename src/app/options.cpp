@@ -43,8 +43,9 @@ void AddGroundTruthSourceOption(CLI::App& command, CommonOptions& options) {
 void AddAlignmentOption(CLI::App& command, std::string& align) {
   command
       .add_option("--align", align,
-                  "comma-separated alignments: none, origin (first pose), origin-scale (and one scale), se3, sim3, "
-                  "first:SECONDS (sim3 on the beginning)")
+                  "comma-separated alignments: none, origin (first pose), origin-scale (and one scale), scale (alone), "
+                  "posyaw (position and heading), se3, sim3; the last five also on a beginning: se3:100 (poses), "
+                  "sim3:5s")
       ->capture_default_str()
       ->type_name("LIST");
 }

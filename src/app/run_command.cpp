@@ -1,8 +1,5 @@
-#include <spdlog/spdlog.h>
-
 #include <iostream>
 #include <memory>
-#include <span>
 
 #include "app/commands.hpp"
 #include "app/error_place.hpp"
@@ -65,37 +62,23 @@ std::vector<std::string> ResultNames(const std::vector<Alignment>& alignments) {
   return results;
 }
 
-/// Drops the alignments that these trajectories do not determine: a straight line, say, leaves sim3's roll open.
-void KeepDetermined(const Trajectory& truth, const Trajectory& estimate, const EvaluationInterval& interval,
-                    const EvaluationOptions& options, std::vector<Alignment>* alignments) {
-  std::erase_if(*alignments, [&](const Alignment& alignment) {
-    try {
-      Evaluate(truth, estimate, std::span(&alignment, 1), interval, options);
-      return false;
-    } catch (const Error& error) {
-      if (error.kind() != ErrorKind::kDegenerateAlignment) throw;
-      spdlog::warn("left out of the report: {}", error.what());
-      return true;
-    }
-  });
-}
-
 /// `only_determined`: as far as the motion allows. Prints the summary.
 void RunEvaluationStage(const StageContext& context, const GroundTruth& truth, const Trajectory& estimate,
-                        const std::vector<TimeNs>& frames, std::vector<Alignment> alignments, bool only_determined) {
-  const EvaluationOptions& options = context.config.evaluation;
+                        const std::vector<TimeNs>& frames, const std::vector<Alignment>& alignments,
+                        bool only_determined) {
+  EvaluationOptions options = context.config.evaluation;
+  options.leave_out_undetermined = only_determined;
   const TimeNs offset = FromSeconds(options.association.estimate_clock_offset_s);
   // The truth of the whole interval counts: an estimate that covers a part of it must not look complete.
   const EvaluationInterval interval{frames.front() + offset, frames.back() + offset};
   NamingPlace((context.options.out / "trajectory.txt").string() + " against " + truth.path.string(), [&] {
-    if (only_determined) KeepDetermined(truth.trajectory, estimate, interval, options, &alignments);
-    if (alignments.empty()) return;
     const Evaluation evaluation = context.record->Time(
         "evaluate", [&] { return Evaluate(truth.trajectory, estimate, alignments, interval, options); });
     context.record->Time("write_evaluation", [&] {
-      WriteEvaluationResults(context.options.out, SequenceName(truth.path), evaluation, !context.options.no_plots);
+      WriteEvaluationResults(context.options.out, SequenceName(truth.path), evaluation, !context.options.no_plots,
+                             static_cast<std::int64_t>(context.record->manifest.rebootstraps.size()));
     });
-    std::cout << FormatSummary(evaluation);
+    if (!evaluation.alignments.empty()) std::cout << FormatSummary(evaluation);
   });
 }
 
@@ -119,7 +102,7 @@ void RunAll(const RunArguments& arguments, const std::vector<std::string>& comma
   std::cout << FormatTracking(tracking) << std::flush;
   const OdometryResult odometry =
       RunOdometryStage(context, tracking.result.tracks, context.options.out / "tracks.txt", recording.camera);
-  std::cout << FormatOdometry(odometry) << FormatSpeed(tracking.result, record.manifest, pool.size()) << std::flush;
+  std::cout << FormatOdometry(odometry) << FormatSpeed(record.manifest, pool.size()) << std::flush;
   if (truth) {
     RunEvaluationStage(context, *truth, odometry.trajectory, tracking.result.frames, alignments,
                        arguments.align.empty());

@@ -94,6 +94,9 @@ TrackingOutcome RunTrackingStage(const StageContext& context, Recording* recordi
       Gnuplot(context.options.out / "plots").Draw("lifetime", LifetimeFigure("lifetime", outcome.lifetimes));
     }
   });
+  const auto& frames = outcome.result.frames;
+  context.record->manifest.recorded_s = ToSeconds(frames.back() - frames.front());
+  context.record->AddCount("threads", static_cast<std::size_t>(context.pool->size()));
   context.record->AddCount("events", outcome.result.events);
   context.record->AddCount("event_frames", outcome.result.frames.size());
   context.record->AddCount("event_key_frames", outcome.result.key_frames);
@@ -147,14 +150,11 @@ std::string FormatOdometry(const OdometryResult& result) {
                 result.bootstraps.empty() ? std::size_t{0} : result.bootstraps.size() - 1);
 }
 
-std::string FormatSpeed(const TrackingResult& tracking, const Manifest& manifest, int threads) {
-  double seconds = 0.0;
-  for (const auto& stage : manifest.stages) {
-    if (stage.stage == "track" || stage.stage == "odometry") seconds += stage.seconds;
-  }
-  const double recorded = ToSeconds(tracking.frames.back() - tracking.frames.front());
-  return Format("speed      %.1f s of events in %.1f s on %d threads: %.1f x real time\n", recorded, seconds, threads,
-                recorded / seconds);
+std::string FormatSpeed(const Manifest& manifest, int threads) {
+  const double recorded = manifest.recorded_s.value_or(0.0);
+  const double factor = RealTimeFactor(manifest).value_or(0.0);
+  return Format("speed      %.1f s of events in %.1f s on %d threads: %.1f x real time\n", recorded,
+                factor > 0.0 ? recorded / factor : 0.0, threads, factor);
 }
 
 }  // namespace evo::app

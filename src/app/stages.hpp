@@ -55,7 +55,7 @@ OdometryResult RunOdometryStage(const StageContext& context, const Tracks& track
 /// The stages' summaries for people: aligned lines that end with a newline.
 std::string FormatTracking(const TrackingOutcome& outcome);
 std::string FormatOdometry(const OdometryResult& result);
-/// Seconds of the recording per second of computing, from the wall times of the stages "track" and "odometry".
-std::string FormatSpeed(const TrackingResult& tracking, const Manifest& manifest, int threads);
+/// Seconds of the recording per second of computing, see RealTimeFactor.
+std::string FormatSpeed(const Manifest& manifest, int threads);
 
 }  // namespace evo::app

@@ -30,7 +30,7 @@ void RunTrack(const TrackArguments& arguments, const std::vector<std::string>& c
   const StageContext context{config, &pool, &record, arguments.stage, !arguments.common.quiet};
   const TrackingOutcome outcome = RunTrackingStage(context, &recording);
   WriteManifest(context.options.out / "manifest.json", record.manifest);
-  std::cout << FormatTracking(outcome) << FormatSpeed(outcome.result, record.manifest, pool.size());
+  std::cout << FormatTracking(outcome) << FormatSpeed(record.manifest, pool.size());
 }
 
 }  // namespace

@@ -51,20 +51,25 @@ std::size_t EditDistance(std::string_view a, std::string_view b) {
 }  // namespace
 
 void Parameters::Add(std::string name, double* value, double lowest, double highest, std::string help) {
-  entries_.push_back({std::move(name), value, lowest, highest, {}, std::move(help)});
+  entries_.push_back({std::move(name), value, lowest, highest, {}, std::move(help), {}, {}});
 }
 
 void Parameters::Add(std::string name, int* value, int lowest, int highest, std::string help) {
   entries_.push_back(
-      {std::move(name), value, static_cast<double>(lowest), static_cast<double>(highest), {}, std::move(help)});
+      {std::move(name), value, static_cast<double>(lowest), static_cast<double>(highest), {}, std::move(help), {}, {}});
 }
 
 void Parameters::Add(std::string name, bool* value, std::string help) {
-  entries_.push_back({std::move(name), value, 0, 1, {}, std::move(help)});
+  entries_.push_back({std::move(name), value, 0, 1, {}, std::move(help), {}, {}});
 }
 
 void Parameters::Add(std::string name, std::string* value, std::vector<std::string> choices, std::string help) {
-  entries_.push_back({std::move(name), value, 0, 0, std::move(choices), std::move(help)});
+  entries_.push_back({std::move(name), value, 0, 0, std::move(choices), std::move(help), {}, {}});
+}
+
+void Parameters::Add(std::string name, std::string* value, std::function<bool(const std::string&)> valid,
+                     std::string expected, std::string help) {
+  entries_.push_back({std::move(name), value, 0, 0, {}, std::move(help), std::move(valid), std::move(expected)});
 }
 
 void Parameters::LoadFile(const std::filesystem::path& path) {
@@ -145,7 +150,8 @@ void Parameters::Assign(const std::string& name, const std::string& text, const 
     if (text != "true" && text != "false") throw refuse("true or false");
     **flag = text == "true";
   } else {
-    if (std::ranges::find(entry->choices, text) == entry->choices.end()) {
+    if (entry->valid && !entry->valid(text)) throw refuse(entry->expected);
+    if (!entry->valid && std::ranges::find(entry->choices, text) == entry->choices.end()) {
       std::string choices;
       for (const auto& choice : entry->choices) choices += (choices.empty() ? "" : ", ") + choice;
       throw refuse("one of: " + choices);
@@ -166,6 +172,7 @@ std::string Parameters::Describe(const Entry& entry) {
   if (std::holds_alternative<double*>(entry.value) || std::holds_alternative<int*>(entry.value)) {
     text += "; " + FormatNumber(entry.lowest) + " to " + FormatNumber(entry.highest);
   }
+  if (entry.valid) text += "; " + entry.expected;
   for (std::size_t i = 0; i < entry.choices.size(); ++i) text += (i ? ", " : "; ") + entry.choices[i];
   return text;
 }

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <sstream>
 
 #include "evo/core/error.hpp"
@@ -73,10 +74,60 @@ Similarity AlignLeastSquares(std::span<const PosePair> pairs, bool with_scale, c
   return {scale, SE3(Eigen::Quaterniond(rotation), mean_truth - scale * (rotation * mean_estimate))};
 }
 
-std::span<const PosePair> FirstSeconds(std::span<const PosePair> pairs, double seconds) {
-  const TimeNs end = pairs.front().t_truth + FromSeconds(seconds);
+/// The angle of the rotation about `up` that makes the sum of (R b - a)^2 over the columns of `a` and `b` least: with
+/// R b = cos b + sin (up x b) + (1 - cos) (up . b) up, the sum of a . R b is largest.
+double BestYaw(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b, const Eigen::Vector3d& up,
+               const std::string& name) {
+  double sine = 0.0;
+  double cosine = 0.0;
+  for (Eigen::Index i = 0; i < a.cols(); ++i) {
+    sine += up.dot(b.col(i).cross(a.col(i)));
+    cosine += a.col(i).dot(b.col(i)) - up.dot(a.col(i)) * up.dot(b.col(i));
+  }
+  if (std::hypot(sine, cosine) <= kEpsilon * static_cast<double>(a.cols())) {
+    throw Degenerate(name, "the " + std::to_string(a.cols()) + " matched positions do not leave the vertical",
+                     "choose --align origin or posyaw:1, or a longer interval");
+  }
+  return std::atan2(sine, cosine);
+}
+
+Similarity AlignPositionAndYaw(std::span<const PosePair> pairs, const Eigen::Vector3d& up, const std::string& name) {
+  const auto n = static_cast<Eigen::Index>(pairs.size());
+  Eigen::Matrix3Xd truth(3, n);
+  Eigen::Matrix3Xd estimate(3, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    truth.col(i) = pairs[static_cast<std::size_t>(i)].T_world_cam_truth.translation();
+    estimate.col(i) = pairs[static_cast<std::size_t>(i)].T_world_cam_estimate.translation();
+  }
+  const Eigen::Vector3d mean_truth = truth.rowwise().mean();
+  const Eigen::Vector3d mean_estimate = estimate.rowwise().mean();
+  const double yaw = n == 1 ? BestYaw(pairs.front().T_world_cam_truth.RotationMatrix(),
+                                      pairs.front().T_world_cam_estimate.RotationMatrix(), up, name)
+                            : BestYaw(truth.colwise() - mean_truth, estimate.colwise() - mean_estimate, up, name);
+  const Eigen::Quaterniond rotation = so3::Exp(yaw * up);
+  return {1.0, SE3(rotation, mean_truth - rotation * mean_estimate)};
+}
+
+/// Those that `alignment` is determined from; never none.
+std::span<const PosePair> Spanned(std::span<const PosePair> pairs, const Alignment& alignment) {
+  if (alignment.first_poses) return pairs.first(std::min(*alignment.first_poses, pairs.size()));
+  if (!alignment.first_seconds) return pairs;
+  const TimeNs end = pairs.front().t_truth + FromSeconds(*alignment.first_seconds);
   const auto last = std::ranges::upper_bound(pairs, end, {}, &PosePair::t_truth);
   return pairs.first(static_cast<std::size_t>(last - pairs.begin()));
+}
+
+constexpr double kLongestSpan = 1e6;  // s
+
+/// ":100" or ":5s" into the fields of `alignment`; false if `text` is neither.
+bool ParseSpan(const std::string& text, Alignment* alignment) {
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [last, failure] = std::from_chars(text.data() + 1, end, value);
+  if (failure != std::errc() || !(value > 0.0 && value < kLongestSpan)) return false;
+  if (last == end && value == std::floor(value)) alignment->first_poses = static_cast<std::size_t>(value);
+  if (std::string(last, end) == "s") alignment->first_seconds = value;
+  return alignment->first_poses || alignment->first_seconds;
 }
 
 }  // namespace
@@ -90,22 +141,23 @@ SE3 Similarity::operator*(const SE3& T_world_cam) const {
 }
 
 Alignment ParseAlignment(const std::string& text) {
-  using Kind = Alignment::Kind;
-  if (text == "none") return {Kind::kNone, 0.0, text};
-  if (text == "origin") return {Kind::kOrigin, 0.0, text};
-  if (text == "origin-scale") return {Kind::kOriginScale, 0.0, text};
-  if (text == "se3") return {Kind::kSe3, 0.0, text};
-  if (text == "sim3") return {Kind::kSim3, 0.0, text};
+  using Method = Alignment::Method;
+  static const std::map<std::string, Method> kMethods{
+      {"none", Method::kNone},   {"origin", Method::kOrigin}, {"origin-scale", Method::kOriginScale},
+      {"scale", Method::kScale}, {"posyaw", Method::kPosYaw}, {"se3", Method::kSe3},
+      {"sim3", Method::kSim3}};
   const std::string prefix = "first:";
-  if (text.starts_with(prefix)) {
-    double seconds = 0.0;
-    const char* const end = text.data() + text.size();
-    const auto [last, failure] = std::from_chars(text.data() + prefix.size(), end, seconds);
-    if (failure == std::errc() && last == end && seconds > 0.0 && seconds < 1e6) return {Kind::kFirst, seconds, text};
+  const std::string meant = text.starts_with(prefix) ? "sim3:" + text.substr(prefix.size()) + "s" : text;
+  const auto colon = std::min(meant.find(':'), meant.size());
+  const auto method = kMethods.find(meant.substr(0, colon));
+  if (method != kMethods.end()) {
+    Alignment alignment{method->second, std::nullopt, std::nullopt, text};
+    const bool may_span = method->second != Method::kNone && method->second != Method::kOrigin;
+    if (colon == meant.size() || (may_span && ParseSpan(meant.substr(colon), &alignment))) return alignment;
   }
   throw Error(ErrorKind::kUsage, "alignment '" + text +
-                                     "' is unknown; choose among none, origin, origin-scale, se3, sim3 and "
-                                     "first:SECONDS");
+                                     "' is unknown; choose among none, origin, origin-scale, scale, posyaw, se3 and "
+                                     "sim3, the last five also over a beginning such as sim3:100 (poses) or sim3:5s");
 }
 
 std::vector<Alignment> ParseAlignments(const std::string& text) {
@@ -119,20 +171,23 @@ std::vector<Alignment> ParseAlignments(const std::string& text) {
   return alignments;
 }
 
-Similarity Align(std::span<const PosePair> pairs, const Alignment& alignment) {
-  if (alignment.kind == Alignment::Kind::kNone) return {};
-  if (pairs.empty()) throw Degenerate(alignment.name, "no matched poses", "check that the stamps overlap");
-  switch (alignment.kind) {
-    case Alignment::Kind::kOrigin:
+Similarity Align(std::span<const PosePair> pairs, const Alignment& alignment, const Eigen::Vector3d& up) {
+  using Method = Alignment::Method;
+  const std::string& name = alignment.name;
+  if (alignment.method == Method::kNone) return {};
+  if (pairs.empty()) throw Degenerate(name, "no matched poses", "check that the stamps overlap");
+  const auto spanned = Spanned(pairs, alignment);
+  switch (alignment.method) {
+    case Method::kOrigin:
       return {1.0, AlignFirstPose(pairs.front())};
-    case Alignment::Kind::kOriginScale:
-      return AlignOriginAndScale(pairs, alignment.name);
-    case Alignment::Kind::kSe3:
-      return AlignLeastSquares(pairs, false, alignment.name);
-    case Alignment::Kind::kSim3:
-      return AlignLeastSquares(pairs, true, alignment.name);
+    case Method::kOriginScale:
+      return AlignOriginAndScale(spanned, name);
+    case Method::kScale:
+      return {AlignLeastSquares(spanned, true, name).scale, SE3()};
+    case Method::kPosYaw:
+      return AlignPositionAndYaw(spanned, up, name);
     default:
-      return AlignLeastSquares(FirstSeconds(pairs, alignment.seconds), true, alignment.name);
+      return AlignLeastSquares(spanned, alignment.method == Method::kSim3, name);
   }
 }
 

@@ -1,10 +1,11 @@
 #include "evo/evaluation/evaluation.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
+#include <limits>
 
+#include "evaluation/pose_errors.hpp"
 #include "evo/core/error.hpp"
+#include "evo/evaluation/projection.hpp"
 
 namespace evo {
 
@@ -34,24 +35,6 @@ Trajectory MoveToTruthClock(Trajectory estimate, TimeNs offset, TimeNs from, Tim
   return Crop(estimate, from, to);
 }
 
-/// Distance that the truth has travelled at each pair since the first one, m: along all true poses between them.
-std::vector<double> ComputeDistances(const Trajectory& truth, std::span<const PosePair> pairs) {
-  std::vector<double> distances;
-  double distance = 0.0;
-  Eigen::Vector3d position = pairs.front().T_world_cam_truth.translation();
-  auto next = std::ranges::upper_bound(truth, pairs.front().t_truth, {}, &StampedPose::t);
-  const auto walk_to = [&](const Eigen::Vector3d& to) {
-    distance += (to - position).norm();
-    position = to;
-  };
-  for (const auto& pair : pairs) {
-    for (; next != truth.end() && next->t <= pair.t_truth; ++next) walk_to(next->T_world_cam.translation());
-    walk_to(pair.T_world_cam_truth.translation());
-    distances.push_back(distance);
-  }
-  return distances;
-}
-
 struct Coverage {
   double share = 0.0;
   std::int64_t gaps = 0;
@@ -74,60 +57,113 @@ Coverage ComputeCoverage(std::span<const StampedPose> poses, TimeNs from, TimeNs
   return coverage;
 }
 
-std::vector<PoseError> ComputeErrors(const Trajectory& truth, std::span<const PosePair> pairs,
-                                     std::span<const double> distances, const Similarity& similarity,
-                                     const Evaluation& evaluation, double chord) {
-  DrivingFrame frame(truth, evaluation.up, chord);
-  std::vector<PoseError> errors;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const auto& pair = pairs[i];
-    const SE3& T_world_cam = pair.T_world_cam_truth;
-    const SE3 aligned = similarity * pair.T_world_cam_estimate;
-    PoseError error;
-    error.stamp = pair.t_estimate;
-    error.seconds = ToSeconds(pair.t_truth - evaluation.from);
-    error.distance = distances[i];
-    error.driving = frame.Split(pair.t_truth, T_world_cam.translation(), aligned.translation());
-    error.translation = (aligned.translation() - T_world_cam.translation()).norm();
-    error.rotation_deg =
-        so3::Log(T_world_cam.rotation().conjugate() * aligned.rotation()).norm() * 180.0 / std::numbers::pi;
-    errors.push_back(error);
+/// Poses without stamps cannot be told apart by seconds. Of the usual deltas those in seconds are passed over.
+void RequireNoSeconds(std::span<const Alignment> alignments, const RelativePoseErrorOptions& rpe) {
+  const auto refuse = [](const std::string& what) {
+    return Error(ErrorKind::kUsage, what + ": files without stamps know no seconds; count in frames or metres");
+  };
+  for (const auto& alignment : alignments) {
+    if (alignment.first_seconds) throw refuse("alignment '" + alignment.name + "'");
   }
-  return errors;
+  for (const auto& delta : ParseDeltas(rpe.deltas)) {
+    if (delta.unit == DeltaUnit::kSeconds && rpe.required) throw refuse("relative errors over '" + delta.name + "'");
+  }
 }
 
-template <typename Component>
-std::vector<double> Column(std::span<const PoseError> errors, const Component& component) {
-  std::vector<double> column;
-  for (const auto& error : errors) column.push_back(component(error));
-  return column;
+/// The pairs within the interval. Truth outside it is no partner, except to interpolate from.
+std::vector<PosePair> PairWithin(const Trajectory& truth, const Trajectory& estimate, const Evaluation& evaluation,
+                                 const AssociationOptions& options) {
+  const bool crops = options.association != "interpolate" && evaluation.has_stamps;
+  auto pairs = Associate(crops ? Crop(truth, evaluation.from, evaluation.to) : truth, estimate, options);
+  std::erase_if(pairs, [&](const PosePair& p) { return p.t_truth < evaluation.from || p.t_truth > evaluation.to; });
+  if (!pairs.empty()) return pairs;
+  throw Error(ErrorKind::kNothingToDo,
+              "no estimated pose has a true one: the estimate covers " + Span(estimate.front().t, estimate.back().t) +
+                  ", the ground truth " + Span(truth.front().t, truth.back().t) + ", the interval judged is " +
+                  Span(evaluation.from, evaluation.to) +
+                  "; check that both use one clock (--time-offset) and the tolerance (--max-difference)");
 }
 
-ErrorSummary Summarize(std::span<const PoseError> errors, double DrivingError::*component) {
-  std::vector<double> values = Column(errors, [&](const PoseError& error) { return error.driving.*component; });
-  const double final = values.back();
-  for (double& value : values) value = std::abs(value);
-  const Statistics statistics = ComputeStatistics(values);
-  return {statistics.mean, statistics.rmse, statistics.max, final};
+/// `poses` moved by `similarity`, then laid into the plane.
+Trajectory Moved(Trajectory poses, const Similarity& similarity, const std::string& plane) {
+  for (auto& pose : poses) pose.T_world_cam = Project(similarity * pose.T_world_cam, plane);
+  return poses;
+}
+
+std::vector<PosePair> Moved(std::vector<PosePair> pairs, const Similarity& similarity, const std::string& plane) {
+  for (auto& pair : pairs) {
+    pair.T_world_cam_estimate = Project(similarity * pair.T_world_cam_estimate, plane);
+    pair.T_world_cam_truth = Project(pair.T_world_cam_truth, plane);
+  }
+  return pairs;
+}
+
+/// What all alignments have in common.
+struct Comparison {
+  Trajectory truth;     // projected
+  Trajectory estimate;  // as it was read
+  Trajectory judged;    // the estimate within the interval, in the truth's clock
+  std::vector<PosePair> pairs;
+  std::vector<double> distances;
+};
+
+AlignedEvaluation EvaluateAligned(const Comparison& comparison, const Alignment& alignment,
+                                  const Evaluation& evaluation, const EvaluationOptions& options) {
+  AlignedEvaluation result;
+  result.alignment = alignment;
+  result.similarity = Align(comparison.pairs, alignment, evaluation.up);
+  result.aligned = Moved(comparison.judged, result.similarity, options.project);
+  const auto pairs = Moved(comparison.pairs, result.similarity, options.project);
+  result.errors = ComputeErrors(comparison.truth, pairs, comparison.distances, evaluation, options);
+  result.longitudinal = Summarize(result.errors, &DrivingError::longitudinal);
+  result.lateral = Summarize(result.errors, &DrivingError::lateral);
+  result.vertical = Summarize(result.errors, &DrivingError::vertical);
+  result.planar = Summarize(result.errors, &DrivingError::planar);
+  result.ape = Summarize(AbsoluteDifferences(pairs), kAbsoluteRelations);
+  const auto estimate = Moved(comparison.estimate, result.similarity, options.project);
+  result.rpe = ComputeRelativePoseErrors(pairs, estimate, evaluation.has_stamps, options.rpe);
+  return result;
+}
+
+bool AreDeltas(const std::string& text) {
+  try {
+    ParseDeltas(text);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 }  // namespace
 
 void Register(Parameters& parameters, EvaluationOptions& options) {
   auto& association = options.association;
-  parameters.Add("evaluation.association", &association.association, {"interpolate", "nearest"},
-                 "how an estimated pose finds its true one");
+  parameters.Add("evaluation.association", &association.association,
+                 {"interpolate", "nearest", "unique", "nearest-truth"}, "how an estimated pose finds its true one");
   parameters.Add("evaluation.max_interpolation_s", &association.max_interpolation_s, 0.0, 1e3,
                  "interpolate: truth poses farther apart are a hole (s)");
-  parameters.Add("evaluation.max_difference_s", &association.max_difference_s, 0.0, 1e3,
-                 "nearest: stamps farther apart form no pair (s)");
+  parameters.Add("evaluation.max_difference_s", &association.max_difference_s, -1.0, 1e3,
+                 "the others: stamps farther apart form no pair (s); negative: what is usual, 0.01 for nearest, 0.02 "
+                 "for unique, twice the median interval of the truth for nearest-truth");
   parameters.Add("evaluation.estimate_clock_offset_s", &association.estimate_clock_offset_s, -1e9, 1e9,
                  "added to the estimate's stamps (s)");
+  parameters.Add("evaluation.project", &options.project, {"none", "xy", "xz", "yz"},
+                 "plane of the truth's world to which all errors are confined");
   parameters.Add("evaluation.up", &options.up, {"auto", "x", "y", "z", "-x", "-y", "-z"},
                  "axis of the truth's world that points up; auto takes the one nearest to the camera's mean up");
+  parameters.Add("evaluation.forward", &options.forward, {"travel", "body"},
+                 "what longitudinal is along: the direction of travel or the true camera's view");
   parameters.Add("evaluation.chord_m", &options.chord_m, 1e-3, 1e3,
                  "length of truth that gives the direction of travel (m)");
   parameters.Add("evaluation.gap_s", &options.gap_s, 1e-3, 1e3, "a longer stretch without a pose is a gap (s)");
+  parameters.Add("evaluation.rpe_deltas", &options.rpe.deltas, AreDeltas, "a list such as 1f,0.5s,10m,5deg,0.1rad",
+                 "distances of the relative errors, in frames, s, m, deg or rad");
+  parameters.Add("evaluation.rpe_pairs", &options.rpe.pairs, {"consecutive", "all", "closest"},
+                 "which poses so far apart are compared");
+  parameters.Add("evaluation.rpe_tolerance", &options.rpe.tolerance, 0.0, 1.0,
+                 "how far from the distance a pair may be, as a share of it");
+  parameters.Add("evaluation.rpe_pairs_from", &options.rpe.pairs_from, {"estimate", "truth"},
+                 "trajectory along which the distance is measured");
 }
 
 Evaluation Evaluate(const Trajectory& truth, const Trajectory& estimate, std::span<const Alignment> alignments,
@@ -137,43 +173,33 @@ Evaluation Evaluate(const Trajectory& truth, const Trajectory& estimate, std::sp
                                              " holds no poses; check what was written to it");
   }
   Evaluation evaluation;
-  evaluation.longest_gap = FromSeconds(options.gap_s);
+  evaluation.has_stamps = options.association.association != "index";
+  evaluation.longest_gap = evaluation.has_stamps ? FromSeconds(options.gap_s) : std::numeric_limits<TimeNs>::max();
   evaluation.from = interval.from.value_or(truth.front().t);
   evaluation.to = interval.to.value_or(truth.back().t);
-
-  std::vector<PosePair> pairs = Associate(truth, estimate, options.association);
-  std::erase_if(pairs, [&](const PosePair& p) { return p.t_truth < evaluation.from || p.t_truth > evaluation.to; });
-  if (pairs.empty()) {
-    throw Error(ErrorKind::kNothingToDo,
-                "no estimated pose has a true one: the estimate covers " + Span(estimate.front().t, estimate.back().t) +
-                    ", the ground truth " + Span(truth.front().t, truth.back().t) + ", the interval judged is " +
-                    Span(evaluation.from, evaluation.to) +
-                    "; check that both use one clock (evaluation.estimate_clock_offset_s) and the tolerance");
-  }
-
-  const TimeNs offset = FromSeconds(options.association.estimate_clock_offset_s);
-  const Trajectory judged = MoveToTruthClock(estimate, offset, evaluation.from, evaluation.to);
-  const auto coverage = ComputeCoverage(judged, evaluation.from, evaluation.to, evaluation.longest_gap);
-  const auto distances = ComputeDistances(truth, pairs);
-  evaluation.truth = Cover(truth, evaluation.from, evaluation.to, evaluation.longest_gap);
   evaluation.up = UpDirection(options.up, truth);
-  evaluation.path_m = distances.back();
+  if (!evaluation.has_stamps) RequireNoSeconds(alignments, options.rpe);
+
+  Comparison comparison;
+  comparison.pairs = PairWithin(truth, estimate, evaluation, options.association);
+  comparison.truth = Moved(truth, {}, options.project);
+  comparison.estimate = estimate;
+  comparison.judged = MoveToTruthClock(estimate, FromSeconds(options.association.estimate_clock_offset_s),
+                                       evaluation.from, evaluation.to);
+  comparison.distances = ComputeDistances(comparison.truth, Moved(comparison.pairs, {}, options.project));
+  evaluation.path_m = comparison.distances.back();
+  evaluation.truth = Cover(comparison.truth, evaluation.from, evaluation.to, evaluation.longest_gap);
+  const auto coverage = ComputeCoverage(comparison.judged, evaluation.from, evaluation.to, evaluation.longest_gap);
   evaluation.coverage = coverage.share;
   evaluation.gaps = coverage.gaps;
 
   for (const auto& alignment : alignments) {
-    AlignedEvaluation result;
-    result.alignment = alignment;
-    result.similarity = Align(pairs, alignment);
-    for (const auto& pose : judged) result.aligned.push_back({pose.t, result.similarity * pose.T_world_cam});
-    result.errors = ComputeErrors(truth, pairs, distances, result.similarity, evaluation, options.chord_m);
-    result.longitudinal = Summarize(result.errors, &DrivingError::longitudinal);
-    result.lateral = Summarize(result.errors, &DrivingError::lateral);
-    result.vertical = Summarize(result.errors, &DrivingError::vertical);
-    result.planar = Summarize(result.errors, &DrivingError::planar);
-    result.ape = ComputeStatistics(Column(result.errors, [](const PoseError& e) { return e.translation; }));
-    result.rotation_deg = ComputeStatistics(Column(result.errors, [](const PoseError& e) { return e.rotation_deg; }));
-    evaluation.alignments.push_back(std::move(result));
+    try {
+      evaluation.alignments.push_back(EvaluateAligned(comparison, alignment, evaluation, options));
+    } catch (const Error& error) {
+      if (!options.leave_out_undetermined || error.kind() != ErrorKind::kDegenerateAlignment) throw;
+      evaluation.left_out.emplace_back(error.what());
+    }
   }
   return evaluation;
 }

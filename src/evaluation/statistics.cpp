@@ -25,12 +25,14 @@ Statistics ComputeStatistics(std::span<const double> errors) {
   for (const double error : errors) variance += (error - statistics.mean) * (error - statistics.mean);
   statistics.standard_deviation = std::sqrt(variance / n);
 
-  std::vector<double> sorted(errors.begin(), errors.end());
-  std::ranges::sort(sorted);
-  const std::size_t middle = sorted.size() / 2;
-  statistics.median = sorted.size() % 2 ? sorted[middle] : 0.5 * (sorted[middle - 1] + sorted[middle]);
-  statistics.min = sorted.front();
-  statistics.max = sorted.back();
+  std::vector<double> values(errors.begin(), errors.end());
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  // Of an even number the two in the middle count; the lower of them is the largest below.
+  statistics.median = values.size() % 2 ? *middle : 0.5 * (*std::max_element(values.begin(), middle) + *middle);
+  const auto [min, max] = std::ranges::minmax(errors);
+  statistics.min = min;
+  statistics.max = max;
   return statistics;
 }
 

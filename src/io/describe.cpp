@@ -102,14 +102,18 @@ void AddMvsecEvents(Description* description, const hdf5::File& file) {
   extent.Describe(description, " (from samples)");
 }
 
-void AddTrajectory(Description* description, const std::string& prefix, const Trajectory& trajectory) {
+void AddPoses(Description* description, const std::string& prefix, const Trajectory& trajectory) {
   double length = 0.0;
   for (std::size_t i = 1; i < trajectory.size(); ++i) {
     length += (trajectory[i].T_world_cam.translation() - trajectory[i - 1].T_world_cam.translation()).norm();
   }
   description->values.emplace_back(prefix + "poses", std::to_string(trajectory.size()));
-  AddSpan(description, prefix, trajectory.size(), trajectory.front().t, trajectory.back().t, "poses/s");
   description->values.emplace_back(prefix + "path length", Fixed(length, 3, "m"));
+}
+
+void AddTrajectory(Description* description, const std::string& prefix, const Trajectory& trajectory) {
+  AddPoses(description, prefix, trajectory);
+  AddSpan(description, prefix, trajectory.size(), trajectory.front().t, trajectory.back().t, "poses/s");
 }
 
 Description DescribeHdf5(const std::filesystem::path& path) {
@@ -207,6 +211,11 @@ Description Describe(const std::filesystem::path& path) {
     case FileKind::kTrajectoryText: {
       Description description{"trajectory", {}};
       AddTrajectory(&description, "", ReadTum(path));
+      return description;
+    }
+    case FileKind::kKittiPoses: {
+      Description description{"KITTI poses without stamps", {}};
+      AddPoses(&description, "", ReadKitti(path));
       return description;
     }
     default:

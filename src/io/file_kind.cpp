@@ -28,6 +28,7 @@ FileKind KindOfRow(std::string_view line) {
   if (!std::ranges::all_of(fields, is_number)) return FileKind::kOtherText;
   if (commas) return fields.size() == 5 ? FileKind::kTrackText : FileKind::kOtherText;
   if (fields.size() == 8) return FileKind::kTrajectoryText;
+  if (fields.size() == 12) return FileKind::kKittiPoses;
   if (fields.size() == 9) return FileKind::kCalibrationText;
   if (fields.size() != 4) return FileKind::kOtherText;
   // 't x y p' has whole pixels and a polarity; 'id t x y' a whole id and, in any recording, a stamp with decimals.
@@ -68,6 +69,8 @@ const char* KindName(FileKind kind) {
       return "an event text";
     case FileKind::kTrajectoryText:
       return "a trajectory text";
+    case FileKind::kKittiPoses:
+      return "a KITTI pose file";
     case FileKind::kTrackText:
       return "a track file";
     case FileKind::kCalibrationText:

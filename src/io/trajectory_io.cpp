@@ -48,6 +48,11 @@ StampedPose ParsePose(const TextLines& lines, std::string_view line) {
   return {*t, {rotation, {v[0], v[1], v[2]}}};
 }
 
+SE3 ToPose(const RowMajor4d& T) {
+  const Eigen::Matrix3d rotation = T.topLeftCorner<3, 3>();
+  return {Eigen::Quaterniond(rotation), T.topRightCorner<3, 1>()};
+}
+
 /// Empty if `T` is a rigid motion.
 std::string RigidFault(const RowMajor4d& T) {
   if (!T.allFinite()) return "the pose is not finite";
@@ -87,8 +92,7 @@ Trajectory ReadMvsec(const std::filesystem::path& path, GroundTruthSource source
     if (i > 0 && t <= trajectory.back().t) throw stamps.Failure(where + NotLater(trajectory.back().t, t));
     const RowMajor4d T = Eigen::Map<const RowMajor4d>(&matrices[16 * i]);
     if (const std::string fault = RigidFault(T); !fault.empty()) throw poses.Failure(where + fault);
-    const Eigen::Matrix3d rotation = T.topLeftCorner<3, 3>();
-    trajectory.push_back({t, {Eigen::Quaterniond(rotation), T.topRightCorner<3, 1>()}});
+    trajectory.push_back({t, ToPose(T)});
   }
   return trajectory;
 }
@@ -113,6 +117,30 @@ Trajectory ReadText(const std::filesystem::path& path) {
 Trajectory ReadTum(const std::filesystem::path& path) {
   RequireKind(path, {FileKind::kTrajectoryText}, kExpectedText);
   return ReadText(path);
+}
+
+Trajectory ReadKitti(const std::filesystem::path& path) {
+  RequireKind(path, {FileKind::kKittiPoses}, "a pose file of rows of 12 numbers (KITTI)");
+  TextLines lines(path);
+  Trajectory trajectory;
+  std::string_view line;
+  while (lines.Next(&line)) {
+    const auto fields = SplitFields(line);
+    if (fields.size() != 12) {
+      throw lines.Failure("expected the 12 numbers of a KITTI pose, found " + std::to_string(fields.size()) + ": " +
+                          Quote(line));
+    }
+    RowMajor4d T = RowMajor4d::Identity();
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      const auto value = ParseFinite(fields[i]);
+      if (!value) throw lines.Failure(Quote(fields[i]) + " is not a finite number");
+      T.data()[i] = *value;
+    }
+    if (const std::string fault = RigidFault(T); !fault.empty()) throw lines.Failure(fault);
+    trajectory.push_back({static_cast<TimeNs>(trajectory.size()) * kNsPerSecond, ToPose(T)});
+  }
+  if (trajectory.empty()) throw Error(ErrorKind::kInput, path.string() + ": no poses; expected rows of 12 numbers");
+  return trajectory;
 }
 
 Trajectory ReadGroundTruth(const std::filesystem::path& path, GroundTruthSource source) {

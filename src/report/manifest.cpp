@@ -2,9 +2,12 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "evo/core/error.hpp"
 #include "evo/core/output_file.hpp"
+#include "report/text_file.hpp"
 
 namespace evo {
 
@@ -33,7 +36,69 @@ Json ParameterTree(const std::vector<std::pair<std::string, std::string>>& param
   return tree;
 }
 
+/// The reverse of ParameterTree.
+void AppendParameters(const Json& tree, const std::string& prefix,
+                      std::vector<std::pair<std::string, std::string>>* parameters) {
+  for (const auto& [name, value] : tree.items()) {
+    if (value.is_object()) {
+      AppendParameters(value, prefix + name + ".", parameters);
+    } else {
+      parameters->emplace_back(prefix + name, value.is_string() ? value.get<std::string>() : value.dump());
+    }
+  }
+}
+
+TimeNs ParseStamp(const std::string& text) {
+  const auto stamp = ParseTime(text);
+  if (!stamp) throw std::runtime_error("rebootstraps: '" + text + "' is not a stamp in seconds");
+  return *stamp;
+}
+
+const Json& Object(const Json& json, const char* name) {
+  const Json& object = json.at(name);
+  if (!object.is_object()) throw std::runtime_error(std::string(name) + " is not an object");
+  return object;
+}
+
+Manifest FromJson(const Json& json) {
+  Manifest manifest;
+  json.at("version").get_to(manifest.version);
+  json.at("command_line").get_to(manifest.command_line);
+  for (const auto& input : json.at("inputs")) {
+    manifest.inputs.push_back(
+        {input.at("role"), input.at("path").get<std::string>(), input.at("bytes"), input.at("sha256")});
+  }
+  for (const auto& [name, count] : Object(json, "counts").items()) manifest.counts.emplace_back(name, count);
+  for (const auto& stamp : json.at("rebootstraps")) manifest.rebootstraps.push_back(ParseStamp(stamp));
+  for (const auto& [stage, seconds] : Object(json, "wall_time_s").items()) manifest.stages.push_back({stage, seconds});
+  if (json.contains("recorded_s")) manifest.recorded_s = json.at("recorded_s").get<double>();
+  AppendParameters(Object(json, "parameters"), "", &manifest.parameters);
+  return manifest;
+}
+
 }  // namespace
+
+Manifest ReadManifest(const std::filesystem::path& path) {
+  const std::string text = ReadTextFile(path);
+  try {
+    return FromJson(Json::parse(text));
+  } catch (const Json::parse_error& error) {
+    const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
+    throw Error(ErrorKind::kInput, path.string() + ":" + std::to_string(1 + std::count(text.begin(), end, '\n')) +
+                                       ": is not JSON; is the file cut short?");
+  } catch (const std::exception& error) {
+    throw Error(ErrorKind::kInput, path.string() + ": is not a manifest of evo-run: " + error.what());
+  }
+}
+
+std::optional<double> RealTimeFactor(const Manifest& manifest) {
+  double seconds = 0.0;
+  for (const auto& stage : manifest.stages) {
+    if (stage.stage == "track" || stage.stage == "odometry") seconds += stage.seconds;
+  }
+  if (!manifest.recorded_s || seconds <= 0.0) return std::nullopt;
+  return *manifest.recorded_s / seconds;
+}
 
 double PeakMemoryMb() {
   rusage usage{};
@@ -57,6 +122,7 @@ void WriteManifest(const std::filesystem::path& path, const Manifest& manifest) 
   for (const TimeNs stamp : manifest.rebootstraps) json["rebootstraps"].push_back(FormatTime(stamp));
   json["wall_time_s"] = Json::object();
   for (const auto& stage : manifest.stages) json["wall_time_s"][stage.stage] = stage.seconds;
+  if (manifest.recorded_s) json["recorded_s"] = *manifest.recorded_s;
   json["peak_memory_mb"] = PeakMemoryMb();
   json["parameters"] = ParameterTree(manifest.parameters);
   OutputFile file(path);

@@ -1,5 +1,7 @@
 #include "evo/report/tables.hpp"
 
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -12,6 +14,8 @@ namespace evo {
 
 namespace {
 
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
 /// Fixed point: a table whose columns line up by eye and that any reader parses; a nanometre is the last digit.
 std::string Format(double value) {
   if (!std::isfinite(value)) return "";
@@ -20,15 +24,49 @@ std::string Format(double value) {
   return std::strcmp(buffer, "-0.000000000") == 0 ? buffer + 1 : buffer;
 }
 
+std::string FormatAllDigits(double value) {
+  if (!std::isfinite(value)) return "";
+  char buffer[32];
+  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
+}
+
 /// A cell of a CSV file: quoted where it must be (RFC 4180).
-std::string Cell(const std::variant<std::string, std::int64_t, double>& value) {
-  if (const auto* number = std::get_if<double>(&value)) return Format(*number);
+std::string Cell(const TableCell& value, Digits digits) {
+  if (const auto* number = std::get_if<double>(&value)) {
+    return digits == Digits::kAll ? FormatAllDigits(*number) : Format(*number);
+  }
   if (const auto* count = std::get_if<std::int64_t>(&value)) return std::to_string(*count);
   const auto& text = std::get<std::string>(value);
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
   return quoted + '"';
+}
+
+using Component = std::pair<const char*, const ErrorSummary&>;
+
+std::array<Component, 4> Components(const AlignedEvaluation& result) {
+  return {{{"longitudinal", result.longitudinal},
+           {"lateral", result.lateral},
+           {"vertical", result.vertical},
+           {"planar", result.planar}}};
+}
+
+/// A length has no sign, so its mean needs no "abs".
+std::string MeanName(const Component& component) {
+  const std::string name = component.first;
+  return (name == "planar" ? "mean_" : "mean_abs_") + name;
+}
+
+void AppendRelative(const AlignedEvaluation& result, std::optional<std::int64_t> rebootstraps, TableRow* row) {
+  const RelativePoseError& rpe = result.rpe.front();
+  row->emplace_back("rpe_delta", rpe.delta.name);
+  row->emplace_back("rpe_translation_rmse_m", Find(rpe.relations, PoseRelation::kTranslation).rmse);
+  row->emplace_back("rpe_rotation_rmse_deg", Find(rpe.relations, PoseRelation::kRotationDeg).rmse);
+  for (const auto& component : Components(result)) {
+    row->emplace_back(MeanName(component) + "_over_distance_percent", 100.0 * component.second.mean_over_distance);
+  }
+  row->emplace_back("rebootstraps", rebootstraps ? TableCell(*rebootstraps) : TableCell(kNone));
 }
 
 TableRow SummaryRow(const std::string& sequence, const Evaluation& evaluation, const AlignedEvaluation& result) {
@@ -39,15 +77,10 @@ TableRow SummaryRow(const std::string& sequence, const Evaluation& evaluation, c
                {"coverage", evaluation.coverage},
                {"gaps", evaluation.gaps},
                {"path_m", evaluation.path_m}};
-  const std::pair<const char*, const ErrorSummary&> components[] = {{"longitudinal", result.longitudinal},
-                                                                    {"lateral", result.lateral},
-                                                                    {"vertical", result.vertical},
-                                                                    {"planar", result.planar}};
+  const auto components = Components(result);
   const auto add = [&](const std::string& unit, double factor) {
-    for (const auto& [name, summary] : components) {
-      // A length has no sign, so its mean needs no "abs".
-      const std::string mean = std::string(name) == "planar" ? "mean_" : "mean_abs_";
-      row.emplace_back(mean + name + unit, factor * summary.mean_abs);
+    for (const auto& component : components) {
+      row.emplace_back(MeanName(component) + unit, factor * component.second.mean_abs);
     }
     for (const auto& [name, summary] : components) {
       row.emplace_back(std::string("rmse_") + name + unit, factor * summary.rmse);
@@ -60,8 +93,9 @@ TableRow SummaryRow(const std::string& sequence, const Evaluation& evaluation, c
     }
   };
   add("_m", 1.0);
-  add("_percent", evaluation.path_m > 0.0 ? 100.0 / evaluation.path_m : std::numeric_limits<double>::quiet_NaN());
-  const auto& ape = result.ape;
+  add("_percent", evaluation.path_m > 0.0 ? 100.0 / evaluation.path_m : kNone);
+  const auto& ape = result.Ape(PoseRelation::kTranslation);
+  const auto& rotation = result.Ape(PoseRelation::kRotationDeg);
   for (const auto& [name, value] : {std::pair{"ape_rmse_m", ape.rmse},
                                     {"ape_mean_m", ape.mean},
                                     {"ape_median_m", ape.median},
@@ -69,9 +103,9 @@ TableRow SummaryRow(const std::string& sequence, const Evaluation& evaluation, c
                                     {"ape_min_m", ape.min},
                                     {"ape_max_m", ape.max},
                                     {"ape_sse_m2", ape.sse},
-                                    {"ape_rotation_rmse_deg", result.rotation_deg.rmse},
-                                    {"ape_rotation_mean_deg", result.rotation_deg.mean},
-                                    {"ape_rotation_max_deg", result.rotation_deg.max}}) {
+                                    {"ape_rotation_rmse_deg", rotation.rmse},
+                                    {"ape_rotation_mean_deg", rotation.mean},
+                                    {"ape_rotation_max_deg", rotation.max}}) {
     row.emplace_back(name, value);
   }
   return row;
@@ -88,6 +122,7 @@ void AppendLine(std::string* table, const std::vector<std::string>& cells) {
 }
 
 std::string Short(double value, int decimals) {
+  if (std::isnan(value)) return "-";
   char buffer[64];
   std::snprintf(buffer, sizeof buffer, "%.*f", decimals, value);
   return buffer;
@@ -102,21 +137,25 @@ std::string AxisName(const Eigen::Vector3d& axis) {
 
 }  // namespace
 
-std::vector<TableRow> SummaryRows(const std::string& sequence, const Evaluation& evaluation) {
+std::vector<TableRow> SummaryRows(const std::string& sequence, const Evaluation& evaluation,
+                                  std::optional<std::int64_t> rebootstraps) {
   std::vector<TableRow> rows;
-  for (const auto& result : evaluation.alignments) rows.push_back(SummaryRow(sequence, evaluation, result));
+  for (const auto& result : evaluation.alignments) {
+    rows.push_back(SummaryRow(sequence, evaluation, result));
+    AppendRelative(result, rebootstraps, &rows.back());
+  }
   return rows;
 }
 
-void WriteCsv(const std::filesystem::path& path, const std::vector<TableRow>& rows) {
+void WriteCsv(const std::filesystem::path& path, const std::vector<TableRow>& rows, Digits digits) {
   OutputFile file(path);
   auto& out = file.stream();
   if (!rows.empty()) {
-    for (std::size_t i = 0; i < rows[0].size(); ++i) out << (i ? "," : "") << rows[0][i].first;
+    for (std::size_t i = 0; i < rows[0].size(); ++i) out << (i ? "," : "") << Cell(rows[0][i].first, digits);
     out << '\n';
   }
   for (const auto& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) out << (i ? "," : "") << Cell(row[i].second);
+    for (std::size_t i = 0; i < row.size(); ++i) out << (i ? "," : "") << Cell(row[i].second, digits);
     out << '\n';
   }
   file.Commit();
@@ -135,13 +174,14 @@ void WriteJson(const std::filesystem::path& path, const std::vector<TableRow>& r
   file.Commit();
 }
 
-void WriteErrors(const std::filesystem::path& path, const std::vector<PoseError>& errors) {
+void WriteErrors(const std::filesystem::path& path, const std::vector<PoseError>& errors, bool has_stamps) {
   OutputFile file(path);
   auto& out = file.stream();
-  out << "stamp,distance,longitudinal,lateral,vertical,planar,translation,rotation_deg\n";
+  out << (has_stamps ? "stamp" : "frame")
+      << ",distance,longitudinal,lateral,vertical,planar,translation,rotation_deg\n";
   for (const auto& error : errors) {
     const auto& driving = error.driving;
-    out << FormatTime(error.stamp);
+    out << (has_stamps ? FormatTime(error.stamp) : std::to_string(error.stamp / kNsPerSecond));
     for (const double value : {error.distance, driving.longitudinal, driving.lateral, driving.vertical, driving.planar,
                                error.translation, error.rotation_deg}) {
       out << ',' << Format(value);
@@ -175,19 +215,25 @@ void WriteLifetimes(const std::filesystem::path& path, const LifetimeStatistics&
 
 std::string FormatSummary(const Evaluation& evaluation) {
   std::string table;
-  table += "path " + Short(evaluation.path_m, 2) + " m, " + Short(ToSeconds(evaluation.to - evaluation.from), 2) +
-           " s, coverage " + Short(100.0 * evaluation.coverage, 1) + " %, gaps " + std::to_string(evaluation.gaps) +
-           ", up " + AxisName(evaluation.up) + "\n";
+  table += "path " + Short(evaluation.path_m, 2) + " m, ";
+  if (evaluation.has_stamps) {
+    table += Short(ToSeconds(evaluation.to - evaluation.from), 2) + " s, coverage " +
+             Short(100.0 * evaluation.coverage, 1) + " %, gaps " + std::to_string(evaluation.gaps) + ", ";
+  }
+  table += "up " + AxisName(evaluation.up) + "\n";
+  const std::string& delta = evaluation.alignments.front().rpe.front().delta.name;
   AppendLine(&table, {"alignment", "scale", "poses", "longitud.", "lateral", "planar", "planar", "planar max",
-                      "planar end", "APE rmse"});
-  AppendLine(&table, {"", "", "", "mean m", "mean m", "mean m", "mean %", "m", "m", "m"});
+                      "planar end", "APE rmse", "RPE rmse"});
+  AppendLine(&table, {"", "", "", "mean m", "mean m", "mean m", "mean %", "m", "m", "m", "m / " + delta});
   const double percent = 100.0 / evaluation.path_m;
   for (const auto& result : evaluation.alignments) {
-    AppendLine(&table, {result.alignment.name, Short(result.similarity.scale, 5), std::to_string(result.errors.size()),
-                        Short(result.longitudinal.mean_abs, 4), Short(result.lateral.mean_abs, 4),
-                        Short(result.planar.mean_abs, 4),
-                        evaluation.path_m > 0.0 ? Short(percent * result.planar.mean_abs, 4) : "-",
-                        Short(result.planar.max_abs, 4), Short(result.planar.final, 4), Short(result.ape.rmse, 4)});
+    AppendLine(
+        &table,
+        {result.alignment.name, Short(result.similarity.scale, 5), std::to_string(result.errors.size()),
+         Short(result.longitudinal.mean_abs, 4), Short(result.lateral.mean_abs, 4), Short(result.planar.mean_abs, 4),
+         evaluation.path_m > 0.0 ? Short(percent * result.planar.mean_abs, 4) : "-", Short(result.planar.max_abs, 4),
+         Short(result.planar.final, 4), Short(result.Ape(PoseRelation::kTranslation).rmse, 4),
+         Short(Find(result.rpe.front().relations, PoseRelation::kTranslation).rmse, 4)});
   }
   return table;
 }

@@ -24,7 +24,7 @@ class CommandLineTest : public EvoRunTest {
 TEST_F(CommandLineTest, HelpShowsAnExampleOfEveryCommand) {
   EXPECT_EQ(Run("--help"), 0);
   const std::string overview = out;
-  for (const std::string command : {"run", "track", "odometry", "evaluate", "info", "config"}) {
+  for (const std::string command : {"run", "track", "odometry", "evaluate", "report", "info", "config"}) {
     EXPECT_NE(overview.find("\n  " + command + " "), std::string::npos) << overview;
     ASSERT_EQ(Run(command + " --help"), 0);
     EXPECT_NE(out.find("Example:\n  evo-run " + command), std::string::npos) << out;
@@ -43,6 +43,11 @@ TEST_F(CommandLineTest, MistakesOfUsageEndWithTwo) {
   EXPECT_EQ(Refusal(Evaluate("gt.txt", "gt.txt", "--from-stamp soon")), 2);
   EXPECT_EQ(Refusal(Evaluate("gt.txt", "gt.txt", "--from-stamp 5 --to-stamp 4")), 2);
   EXPECT_EQ(Refusal(Evaluate("gt.txt", "gt.txt", "-v -q")), 2);
+  for (const char* mistake : {"--rpe 10", "--rpe 10x", "--rpe-pairs some", "--project zz", "--forward back",
+                              "--association best", "--max-difference=-1", "--time-offset=nan", "--max-difference nan",
+                              "--max-difference x", "--align none:5", "--align sim3:0"}) {
+    EXPECT_EQ(Refusal(Evaluate("gt.txt", "gt.txt", mistake)), 2) << mistake;
+  }
   EXPECT_FALSE(fs::exists(folder / "result"));
 }
 
@@ -53,6 +58,44 @@ TEST_F(CommandLineTest, MistakesOfConfigurationEndWithThree) {
   std::ofstream(file) << "evaluation:\n  gap_s: 1\n  chord_m: -1\n";
   EXPECT_EQ(Refusal("config --check '" + file.string() + "'"), 3);
   EXPECT_NE(err.find("bad.yaml:3"), std::string::npos) << err;
+}
+
+TEST_F(CommandLineTest, RelativeErrorsOverWhatWasAskedFor) {
+  ASSERT_EQ(Run(Evaluate("est_drift.txt", "gt.txt", "--association nearest --rpe 10m,0.5s --rpe-pairs all")), 0) << err;
+  EXPECT_EQ(err, "");
+  const std::string metrics = ReadFile(folder / "result" / "metrics.csv");
+  // The digits that evo prints.
+  EXPECT_NE(metrics.find("gt,sim3,rpe,translation,m,0.5,s,all,"), std::string::npos) << metrics;
+  EXPECT_EQ(Run(Evaluate("est_drift.txt", "gt.txt", "--align none --association nearest --rpe 10m --force")), 0) << err;
+  EXPECT_NE(
+      ReadFile(folder / "result" / "metrics.csv").find("gt,none,rpe,translation,m,10,m,consecutive,39,0.085660127773"),
+      std::string::npos);
+  EXPECT_NE(ReadFile(folder / "result" / "summary.csv").find(",10m,0.085660128,"), std::string::npos);
+}
+
+TEST_F(CommandLineTest, ADeltaLongerThanTheWayIsMissedOrRefused) {
+  ASSERT_EQ(Run(Evaluate("gt.txt", "gt.txt", "--align none --set evaluation.rpe_deltas=1f,9000m")), 0) << err;
+  EXPECT_NE(err.find("9000m"), std::string::npos) << err;
+  EXPECT_NE(ReadFile(folder / "result" / "metrics.csv").find(",9000,m,consecutive,0,,,,,,,\n"), std::string::npos);
+  EXPECT_EQ(Refusal(Evaluate("gt.txt", "gt.txt", "--align none --rpe 9000m --force")), 5);
+  EXPECT_NE(err.find("9000m"), std::string::npos) << err;
+  EXPECT_EQ(Refusal(Evaluate("gt.txt", "gt.txt", "--set evaluation.rpe_deltas=9 --force")), 3);
+}
+
+TEST_F(CommandLineTest, KittiPosesAreComparedOneByOne) {
+  ASSERT_EQ(Run(Evaluate("kitti_est.txt", "kitti_gt.txt", "--rpe 100m")), 0) << err;
+  EXPECT_TRUE(out.starts_with("path 1229.41 m, up -y\n")) << out;
+  EXPECT_TRUE(ReadFile(folder / "result" / "errors.csv").starts_with("frame,distance,"));
+  EXPECT_EQ(Refusal(Evaluate("kitti_est.txt", "gt.txt", "--force")), 4);
+  EXPECT_EQ(Refusal(Evaluate("gt.txt", "kitti_gt.txt", "--force")), 4);
+  for (const char* words : {"--rpe 1s", "--align sim3:5s", "--association nearest", "--time-offset=1"}) {
+    EXPECT_EQ(Refusal(Evaluate("kitti_est.txt", "kitti_gt.txt", std::string(words) + " --force")), 2) << words;
+  }
+  const std::string shorter = Write("short.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
+  EXPECT_EQ(Refusal("evaluate --no-plots --estimate " + Quote(shorter) + " --ground-truth " + Data("kitti_gt.txt") +
+                    " --out " + Quote(folder / "other")),
+            4);
+  EXPECT_NE(err.find("has 1 and the ground truth 1600"), std::string::npos) << err;
 }
 
 TEST_F(CommandLineTest, PrintedConfigurationPassesTheCheck) {
@@ -94,12 +137,13 @@ TEST_F(CommandLineTest, EvaluateWritesItsTablesAndAManifest) {
   EXPECT_NE(ReadFile(folder / "result" / "summary.csv").find("\ndrive,none,1.000000000,586,"), std::string::npos);
   EXPECT_TRUE(fs::exists(folder / "result" / "errors.csv"));
   EXPECT_TRUE(fs::exists(folder / "result" / "errors_first-5.csv"));
+  EXPECT_TRUE(fs::exists(folder / "result" / "metrics.csv"));
   EXPECT_EQ(nlohmann::json::parse(ReadFile(folder / "result" / "summary.json")).size(), 2u);
   const auto manifest = nlohmann::json::parse(ReadFile(folder / "result" / "manifest.json"));
   EXPECT_EQ(manifest["counts"]["matched_poses"], 586);
   EXPECT_EQ(manifest["parameters"]["evaluation"]["association"], "nearest");
   EXPECT_EQ(manifest["inputs"][0]["sha256"].get<std::string>().size(), 64u);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder / "result"), {}), 5);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder / "result"), {}), 6);
 }
 
 TEST_F(CommandLineTest, EarlierResultsAreKeptUnlessForced) {

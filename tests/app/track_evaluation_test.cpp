@@ -122,6 +122,8 @@ TEST_F(TrackEvaluationTest, TheClockOffsetMovesTheTracks) {
   EXPECT_EQ(Refusal(arguments + To("none")), 5);
   ASSERT_EQ(Run(arguments + " --set evaluation.estimate_clock_offset_s=-5" + To("moved")), 0) << err;
   EXPECT_EQ(Quality("moved")["error_max "], "0.000000000");
+  ASSERT_EQ(Run(arguments + " --time-offset=-5" + To("option")), 0) << err;
+  EXPECT_EQ(ReadFile(folder / "option" / "track_errors.csv"), ReadFile(folder / "moved" / "track_errors.csv"));
 }
 
 TEST_F(TrackEvaluationTest, OnlyTheIntervalIsJudged) {

@@ -87,6 +87,19 @@ TEST_F(ParametersTest, SettingsWin) {
   EXPECT_THROW(parameters.LoadFile("/nonexistent.yaml"), Error);
 }
 
+TEST_F(ParametersTest, TextOfItsOwnGrammar) {
+  std::string list = "1,2";
+  const auto is_list = [](const std::string& text) {
+    return !text.empty() && text.find_first_not_of("0123456789,") == std::string::npos;
+  };
+  parameters.Add("odometry.list", &list, is_list, "whole numbers", "some numbers");
+  parameters.Set("odometry.list=3,4,5");
+  EXPECT_EQ(list, "3,4,5");
+  EXPECT_NE(Refusal("odometry: {list: x}").find("must be whole numbers"), std::string::npos);
+  EXPECT_EQ(list, "3,4,5");
+  EXPECT_NE(parameters.ToYaml().find("list: 3,4,5  # some numbers; whole numbers\n"), std::string::npos);
+}
+
 TEST_F(ParametersTest, EmptyFileChangesNothing) {
   parameters.LoadText("", "empty");
   parameters.LoadText("# nothing\n", "comment");

@@ -38,7 +38,10 @@ Trajectory Moved(Trajectory trajectory, const Similarity& similarity) {
 }
 
 double Rmse(const Trajectory& truth, const Trajectory& estimate, const char* alignment) {
-  return Evaluate(truth, estimate, std::vector{ParseAlignment(alignment)}, {}, {}).alignments.front().ape.rmse;
+  return Evaluate(truth, estimate, std::vector{ParseAlignment(alignment)}, {}, {})
+      .alignments.front()
+      .Ape(PoseRelation::kTranslation)
+      .rmse;
 }
 
 const Similarity kRigid{1.0, SE3(so3::Exp({0.4, -1.2, 2.0}), {100.0, -20.0, 3.0})};
@@ -49,7 +52,7 @@ TEST(Alignment, FindsTheMotionThatWasApplied) {
   for (const char* name : {"sim3", "origin-scale", "first:2.5"}) {
     EXPECT_LT(Rmse(truth, Moved(truth, kSimilar), name), 1e-9) << name;
     const auto pairs = Associate(truth, Moved(truth, kSimilar), {});
-    EXPECT_NEAR(Align(pairs, ParseAlignment(name)).scale, 1.0 / 0.3, 1e-9) << name;
+    EXPECT_NEAR(Align(pairs, ParseAlignment(name), Eigen::Vector3d::UnitZ()).scale, 1.0 / 0.3, 1e-9) << name;
   }
   for (const char* name : {"se3", "origin"}) EXPECT_LT(Rmse(truth, Moved(truth, kRigid), name), 1e-9) << name;
   EXPECT_GT(Rmse(truth, Moved(truth, kRigid), "none"), 1.0);
@@ -94,7 +97,9 @@ TEST(Alignment, ReflectionIsNeverUsed) {
     pose.T_world_cam = SE3(pose.T_world_cam.rotation(), {p.x(), -p.y(), p.z()});
   }
   const auto pairs = Associate(truth, mirrored, {});
-  EXPECT_NEAR(Align(pairs, ParseAlignment("se3")).T_truth_estimate.RotationMatrix().determinant(), 1.0, 1e-12);
+  EXPECT_NEAR(
+      Align(pairs, ParseAlignment("se3"), Eigen::Vector3d::UnitZ()).T_truth_estimate.RotationMatrix().determinant(),
+      1.0, 1e-12);
   EXPECT_GT(Rmse(truth, mirrored, "se3"), 0.1);
 }
 
@@ -130,12 +135,79 @@ TEST(Alignment, NoOverlapIsNothingToDo) {
   EXPECT_EQ(Refusal({}, truth, "none"), ErrorKind::kNothingToDo);
 }
 
+TEST(Alignment, ScaleIsThatOfSim3AboutTheOrigin) {
+  const auto truth = Curve(80);
+  const auto pairs = Associate(truth, Moved(Noisy(truth, 4), kSimilar), {});
+  const auto scale = Align(pairs, ParseAlignment("scale"), Eigen::Vector3d::UnitZ());
+  EXPECT_DOUBLE_EQ(scale.scale, Align(pairs, ParseAlignment("sim3"), Eigen::Vector3d::UnitZ()).scale);
+  EXPECT_EQ(scale.T_truth_estimate.Matrix(), Eigen::Matrix4d::Identity());
+}
+
+TEST(Alignment, PosYawFindsPositionAndHeadingOnly) {
+  const auto truth = Curve(80);
+  const Eigen::Vector3d up = -Eigen::Vector3d::UnitY();
+  const Similarity turned{1.0, SE3(so3::Exp(-2.5 * up), {4.0, 5.0, -6.0})};
+  const auto tilted = Moved(truth, {1.0, SE3(so3::Exp({0.2, 0.0, 0.0}), Eigen::Vector3d::Zero())});
+  for (const char* name : {"posyaw", "posyaw:1", "posyaw:7", "posyaw:2.5s"}) {
+    const auto found = Align(Associate(truth, Moved(truth, turned), {}), ParseAlignment(name), up);
+    const SE3 rest = found.T_truth_estimate * turned.T_truth_estimate;
+    EXPECT_LT((rest.Matrix() - Eigen::Matrix4d::Identity()).norm(), 1e-9) << name;
+    const auto level = Align(Associate(truth, tilted, {}), ParseAlignment(name), up);
+    EXPECT_LT((level.T_truth_estimate.rotation() * up - up).norm(), 1e-12) << name;
+  }
+}
+
+TEST(Alignment, PosYawIsTheBestOfAllHeadings) {
+  const auto truth = Curve(80);
+  const auto pairs = Associate(truth, Noisy(Moved(truth, kRigid), 5), {});
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  const auto cost = [&](const SE3& T) {
+    double sum = 0.0;
+    for (const auto& pair : pairs) {
+      sum += (T * pair.T_world_cam_estimate.translation() - pair.T_world_cam_truth.translation()).squaredNorm();
+    }
+    return sum;
+  };
+  const SE3 best = Align(pairs, ParseAlignment("posyaw"), up).T_truth_estimate;
+  for (const double step : {-0.01, 0.01}) {
+    EXPECT_LT(cost(best), cost(SE3(so3::Exp(step * up), Eigen::Vector3d::Zero()) * best));
+    EXPECT_LT(cost(best), cost(SE3(Eigen::Quaterniond::Identity(), {step, step, step}) * best));
+  }
+}
+
+TEST(Alignment, SpansCountPosesOrSeconds) {
+  const auto truth = Curve(80);  // ten poses a second
+  const auto pairs = Associate(truth, Noisy(truth, 6), {});
+  const auto align = [&](std::span<const PosePair> part, const char* name) {
+    return Align(part, ParseAlignment(name), Eigen::Vector3d::UnitZ()).T_truth_estimate.Matrix();
+  };
+  const std::span first(pairs.data(), 31);
+  for (const std::string method : {"se3", "sim3", "posyaw", "scale", "origin-scale"}) {
+    const auto expected = align(first, method.c_str());
+    EXPECT_EQ(align(pairs, (method + ":31").c_str()), expected) << method;
+    EXPECT_EQ(align(pairs, (method + ":3s").c_str()), expected) << method;
+    EXPECT_EQ(align(pairs, (method + ":1000").c_str()), align(pairs, method.c_str())) << method;
+  }
+  EXPECT_EQ(align(pairs, "first:3"), align(pairs, "sim3:3s"));
+  EXPECT_NE(align(pairs, "sim3:3s"), align(pairs, "sim3"));
+}
+
+TEST(Alignment, PosYawNeedsMotionAcross) {
+  Trajectory lift;
+  for (int i = 0; i < 20; ++i) lift.push_back({i * kNsPerSecond, SE3(Eigen::Quaterniond::Identity(), {0, 0, 0.5 * i})});
+  const auto pairs = Associate(lift, lift, {});
+  EXPECT_THROW(Align(pairs, ParseAlignment("posyaw"), Eigen::Vector3d::UnitZ()), Error);
+  EXPECT_EQ(Align(pairs, ParseAlignment("posyaw:1"), Eigen::Vector3d::UnitZ()).scale, 1.0);
+}
+
 TEST(Alignment, ReadsNames) {
   const auto alignments = ParseAlignments("none,first:2.5,sim3,none");
   ASSERT_EQ(alignments.size(), 3u);
-  EXPECT_EQ(alignments[1].kind, Alignment::Kind::kFirst);
-  EXPECT_DOUBLE_EQ(alignments[1].seconds, 2.5);
-  for (const char* text : {"", "umeyama", "first:", "first:0", "first:-1", "first:nan", "first:2s", "sim3,,se3"}) {
+  EXPECT_EQ(alignments[1].method, Alignment::Method::kSim3);
+  EXPECT_EQ(alignments[1].first_seconds, 2.5);
+  for (const char* text :
+       {"", "umeyama", "first:", "first:0", "first:-1", "first:nan", "first:2s", "sim3,,se3", "sim3:", "sim3:0",
+        "sim3:2.5", "sim3:-3s", "sim3:3m", "none:3", "origin:1", "sim3:nan", "sim3:5s5"}) {
     EXPECT_THROW(ParseAlignments(text), Error) << text;
   }
 }

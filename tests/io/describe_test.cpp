@@ -131,6 +131,7 @@ TEST_F(FileKindTest, IsToldByContent) {
   EXPECT_EQ(DetectKind(Write("a", "1.5,10,20,0.1,7\n")), FileKind::kTrackText);
   EXPECT_EQ(DetectKind(Write("a", "# id timestamp x y\n1 5 6 1\n")), FileKind::kTrackText);
   EXPECT_EQ(DetectKind(Write("a", "0.02 0.1 0.0 0.0 0.0 0.0 0.0 1.0\n")), FileKind::kTrajectoryText);
+  EXPECT_EQ(DetectKind(Write("k", "1 0 0 0 0 1 0 0 0 0 1 0\n")), FileKind::kKittiPoses);
   EXPECT_EQ(DetectKind(Write("a", "199 198 132 110 -0.3 0.1 0 0 0\n")), FileKind::kCalibrationText);
   EXPECT_EQ(DetectKind(Write("a", "# chain\nT_x:\n- [1]\ncam0:\n  a: b\n")), FileKind::kCalibrationYaml);
   EXPECT_EQ(DetectKind(Write("a", "a,b\n")), FileKind::kOtherText);

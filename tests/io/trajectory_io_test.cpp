@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "evo/io/file_kind.hpp"
 #include "evo/io/mvsec_writer.hpp"
 #include "io/hdf5_support.hpp"
 #include "io/support.hpp"
@@ -120,6 +121,32 @@ TEST_F(TrajectoryIoTest, RefusesFaultyTextAndNamesTheLine) {
   ExpectMentions(RefusalOf(good + "1.0 0 0 0 0 0 0 1\n"), {"bad.txt:3: ", "not later", "1.000000000 s"});
   ExpectMentions(RefusalOf(good + "0.5 0 0 0 0 0 0 1\n"), {"bad.txt:3: ", "0.500000000 s"});
   ExpectMentions(RefusalOf("# nothing\n"), {"no poses"});
+}
+
+TEST_F(TrajectoryIoTest, ReadsKittiPosesRowByRow) {
+  const auto path = Write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n0 -1 0 5 1 0 0 6 0 0 1 7\n");
+  EXPECT_EQ(DetectKind(path), FileKind::kKittiPoses);
+  const Trajectory read = ReadKitti(path);
+  ASSERT_EQ(read.size(), 2u);
+  EXPECT_EQ(read[1].t, kNsPerSecond);
+  EXPECT_LT((read[1].T_world_cam * Eigen::Vector3d(1, 0, 0) - Eigen::Vector3d(5, 7, 7)).norm(), 1e-12);
+}
+
+TEST_F(TrajectoryIoTest, RefusesFaultyKittiPosesAndNamesTheLine) {
+  const std::string good = "1 0 0 0 0 1 0 0 0 0 1 0\n";
+  const auto refusal = [&](const std::string& text) {
+    const auto path = Write("bad.txt", text);
+    return Refusal([&] { ReadKitti(path); });
+  };
+  ExpectMentions(refusal(good + "1 0 0 0 0 1 0 0 0 0 1\n"), {"bad.txt:2: ", "12 numbers", "found 11"});
+  ExpectMentions(refusal(good + "1 0 0 nan 0 1 0 0 0 0 1 0\n"), {"bad.txt:2: ", "'nan'"});
+  ExpectMentions(refusal(good + "1 0 0 0 0 2 0 0 0 0 1 0\n"), {"bad.txt:2: ", "orthonormal"});
+  ExpectMentions(refusal(good + "1 0 0 0 0 1 0 0 0 0 -1 0\n"), {"bad.txt:2: ", "orthonormal"});
+  ExpectMentions(refusal("1.0 0 0 0 0 0 0 1\n"), {"a trajectory text", "12 numbers"});
+  ExpectMentions(refusal(""), {"an empty file"});
+  const auto path = Write("poses.txt", good);
+  ExpectMentions(Refusal([&] { ReadTum(path); }), {"a KITTI pose file"});
+  ExpectMentions(Refusal([&] { ReadGroundTruth(path, GroundTruthSource::kLoam); }), {"a KITTI pose file"});
 }
 
 TEST_F(TrajectoryIoTest, RefusesOtherFiles) {

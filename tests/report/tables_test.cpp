@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "evo/core/error.hpp"
 #include "evo/report/manifest.hpp"
+#include "evo/report/metric_rows.hpp"
 #include "fixtures.hpp"
 
 namespace evo {
@@ -16,7 +19,7 @@ using TablesTest = ReportTest;
 
 TEST_F(TablesTest, ErrorsHaveARowAPose) {
   const auto evaluation = SampleEvaluation();
-  WriteErrors(folder / "errors.csv", evaluation.alignments[0].errors);
+  WriteErrors(folder / "errors.csv", evaluation.alignments[0].errors, true);
   std::istringstream lines(ReadFile(folder / "errors.csv"));
   std::string line;
   std::getline(lines, line);
@@ -43,11 +46,50 @@ TEST_F(TablesTest, SummaryColumnsStayWhatTheyAre) {
       "rmse_vertical_percent,rmse_planar_percent,max_longitudinal_percent,max_lateral_percent,max_vertical_percent,"
       "max_planar_percent,final_longitudinal_percent,final_lateral_percent,final_vertical_percent,"
       "final_planar_percent,ape_rmse_m,ape_mean_m,ape_median_m,ape_std_m,ape_min_m,ape_max_m,ape_sse_m2,"
-      "ape_rotation_rmse_deg,ape_rotation_mean_deg,ape_rotation_max_deg\n"))
+      "ape_rotation_rmse_deg,ape_rotation_mean_deg,ape_rotation_max_deg,rpe_delta,rpe_translation_rmse_m,"
+      "rpe_rotation_rmse_deg,mean_abs_longitudinal_over_distance_percent,mean_abs_lateral_over_distance_percent,"
+      "mean_abs_vertical_over_distance_percent,mean_planar_over_distance_percent,rebootstraps\n"))
       << csv;
   EXPECT_NE(csv.find("\n\"drive, \"\"day\"\"\",none,1.000000000,182,0.900000000,1,100.000000000,"), std::string::npos)
       << csv;
   EXPECT_NE(csv.find("\n\"drive, \"\"day\"\"\",origin,"), std::string::npos) << csv;
+}
+
+TEST_F(TablesTest, SummaryEndsWithRelativeErrorsAndRebootstraps) {
+  const auto row = SummaryRows("day", SampleEvaluation(), 3).front();
+  WriteCsv(folder / "summary.csv", {row});
+  // Of a frame 0.49 m instead of 0.5 m, but for the one second without poses: 19 frames less.
+  EXPECT_NE(ReadFile(folder / "summary.csv").find(",1f,0.01"), std::string::npos);
+  EXPECT_EQ(row.back().first, "rebootstraps");
+  EXPECT_EQ(std::get<std::int64_t>(row.back().second), 3);
+  const auto unknown = SummaryRows("day", SampleEvaluation()).front();
+  EXPECT_TRUE(std::isnan(std::get<double>(unknown.back().second)));
+  const auto share = std::ranges::find(row, "mean_planar_over_distance_percent", [](const auto& c) { return c.first; });
+  EXPECT_NEAR(std::get<double>(share->second), 2.0, 1e-9);
+}
+
+TEST_F(TablesTest, MetricsHaveEveryDigit) {
+  WriteCsv(folder / "metrics.csv", MetricRows("day", SampleEvaluation()), Digits::kAll);
+  std::istringstream lines(ReadFile(folder / "metrics.csv"));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line,
+            "sequence,alignment,metric,quantity,unit,delta,delta_unit,pairs,count,rmse,mean,median,std,min,max,sse");
+  int rows = 0;
+  for (; std::getline(lines, line); ++rows) EXPECT_EQ(std::ranges::count(line, ','), 15) << line;
+  EXPECT_EQ(rows, 2 * (5 + 3 * 7));
+  const Statistics third{1, 1.0 / 3.0, 1e-20, 0.0, 0.0, 0.0, 0.0, 0.0};
+  WriteCsv(folder / "one.csv", {MetricRow("a", "b", "c", "d", "m", 0.1, "s", "all", third)}, Digits::kAll);
+  EXPECT_NE(ReadFile(folder / "one.csv").find("\na,b,c,d,m,0.1,s,all,1,0.3333333333333333,1e-20,0,0,0,0,0\n"),
+            std::string::npos);
+}
+
+TEST_F(TablesTest, FilesWithoutStampsNameFrames) {
+  PoseError error;
+  error.stamp = 7 * kNsPerSecond;
+  WriteErrors(folder / "errors.csv", {error}, false);
+  EXPECT_NE(ReadFile(folder / "errors.csv").find("\n7,0.000000000,"), std::string::npos);
+  EXPECT_TRUE(ReadFile(folder / "errors.csv").starts_with("frame,"));
 }
 
 TEST_F(TablesTest, JsonSaysTheSameAsCsv) {
@@ -138,7 +180,7 @@ TEST_F(TablesTest, ManifestHoldsWhatWasRun) {
 TEST_F(TablesTest, CannotWriteIsAnOutputError) {
   std::ofstream(folder / "file") << "x";
   try {
-    WriteErrors(folder / "file" / "errors.csv", {});
+    WriteErrors(folder / "file" / "errors.csv", {}, true);
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::kOutput);

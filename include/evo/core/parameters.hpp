@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -20,6 +21,9 @@ class Parameters {
   void Add(std::string name, int* value, int lowest, int highest, std::string help);
   void Add(std::string name, bool* value, std::string help);
   void Add(std::string name, std::string* value, std::vector<std::string> choices, std::string help);
+  /// Any text that is `valid`; `expected` says what is.
+  void Add(std::string name, std::string* value, std::function<bool(const std::string&)> valid, std::string expected,
+           std::string help);
 
   void LoadFile(const std::filesystem::path& path);
   /// `source` names the text in messages.
@@ -41,6 +45,8 @@ class Parameters {
     double highest = std::numeric_limits<double>::infinity();
     std::vector<std::string> choices;
     std::string help;
+    std::function<bool(const std::string&)> valid;  ///< of a text without choices
+    std::string expected;
   };
 
   Entry* Find(std::string_view name);

@@ -11,6 +11,8 @@
 #include "evo/evaluation/alignment.hpp"
 #include "evo/evaluation/association.hpp"
 #include "evo/evaluation/driving.hpp"
+#include "evo/evaluation/pose_relation.hpp"
+#include "evo/evaluation/relative_pose_error.hpp"
 #include "evo/evaluation/statistics.hpp"
 #include "evo/geometry/trajectory.hpp"
 
@@ -18,9 +20,14 @@ namespace evo {
 
 struct EvaluationOptions {
   AssociationOptions association;
-  std::string up = "auto";  ///< see UpDirection
-  double chord_m = 1.0;     ///< see DrivingFrame
-  double gap_s = 0.5;       ///< a longer stretch without an estimated pose is a gap
+  RelativePoseErrorOptions rpe;
+  std::string project = "none";    ///< see Project; the estimate after its alignment
+  std::string up = "auto";         ///< see UpDirection
+  std::string forward = "travel";  ///< see DrivingFrame
+  double chord_m = 1.0;            ///< see DrivingFrame
+  double gap_s = 0.5;              ///< a longer stretch without an estimated pose is a gap
+  /// An alignment that the poses do not determine is left out instead of refused.
+  bool leave_out_undetermined = false;
 };
 
 void Register(Parameters& parameters, EvaluationOptions& options);
@@ -47,6 +54,9 @@ struct ErrorSummary {
   double rmse = 0.0;
   double max_abs = 0.0;
   double final = 0.0;  ///< at the last pose, with its sign
+  /// Mean over the poses of absolute error / distance travelled so far. Poses within the first 1 m of the way are left
+  /// out; NaN where there are no others.
+  double mean_over_distance = 0.0;
 };
 
 /// What one alignment gives.
@@ -56,24 +66,28 @@ struct AlignedEvaluation {
   Trajectory aligned;  ///< every estimated pose of the interval, in the truth's world frame and clock
   std::vector<PoseError> errors;
   ErrorSummary longitudinal, lateral, vertical, planar;
-  Statistics ape;           ///< absolute pose error, translation, m
-  Statistics rotation_deg;  ///< absolute pose error, rotation angle, degrees
+  std::vector<RelationStatistics> ape;  ///< absolute pose errors, kAbsoluteRelations
+  std::vector<RelativePoseError> rpe;   ///< one for each delta
+
+  const Statistics& Ape(PoseRelation relation) const { return Find(ape, relation); }
 };
 
 struct Evaluation {
-  TimeNs from = 0;  ///< the interval judged
+  bool has_stamps = true;  ///< else stamps are the numbers of the poses, in s
+  TimeNs from = 0;         ///< the interval judged
   TimeNs to = 0;
-  Trajectory truth;        ///< the truth within it and the poses next to it
+  Trajectory truth;        ///< the truth within it and the poses next to it, projected if so wanted
   Eigen::Vector3d up;      ///< unit vector along an axis of the truth's world frame
   double path_m = 0.0;     ///< length of the truth from the first pair to the last
-  double coverage = 0.0;   ///< share of the interval outside gaps, in [0, 1]
+  double coverage = 0.0;   ///< share of the interval outside gaps, in [0, 1]; 1 without stamps
   TimeNs longest_gap = 0;  ///< a stretch of the interval without a pose that is longer is a gap
   std::int64_t gaps = 0;   ///< their number, those at the start and the end of the interval included
   std::vector<AlignedEvaluation> alignments;
+  std::vector<std::string> left_out;  ///< why, of each alignment that the poses do not determine
 };
 
 /// Judges `estimate` by `truth`. Throws Error: kNothingToDo where they do not overlap in time, kDegenerateAlignment as
-/// Align does.
+/// Align does, kUsage where seconds are asked of files without stamps.
 Evaluation Evaluate(const Trajectory& truth, const Trajectory& estimate, std::span<const Alignment> alignments,
                     const EvaluationInterval& interval, const EvaluationOptions& options);
 

@@ -10,6 +10,7 @@ enum class FileKind {
   kHdf5,
   kEventText,        ///< `t x y p`
   kTrajectoryText,   ///< `t px py pz qx qy qz qw`
+  kKittiPoses,       ///< rows of 12 numbers, the upper three rows of a pose's matrix
   kTrackText,        ///< `id t x y` or `t,x,y,theta,id`
   kCalibrationText,  ///< `fx fy cx cy k1 k2 p1 p2 k3`
   kCalibrationYaml,  ///< Kalibr camchain

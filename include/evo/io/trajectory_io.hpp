@@ -17,6 +17,10 @@ enum class GroundTruthSource {
 /// Throws Error (kInput) with file and line; stamps must strictly increase and there must be a pose.
 Trajectory ReadTum(const std::filesystem::path& path);
 
+/// Reads a KITTI pose file: rows of 12 numbers, the first three rows of T_world_cam, row by row, in metres. There are
+/// no stamps: the n-th pose (from 0) gets n seconds. Throws Error (kInput) with file and line.
+Trajectory ReadKitti(const std::filesystem::path& path);
+
 /// Reads the `source` of an MVSEC _gt.hdf5 (N x 4 x 4 row-major T_world_cam and N stamps in seconds) or, whatever the
 /// source, a TUM text, told by content. Throws Error (kInput) with file and row.
 Trajectory ReadGroundTruth(const std::filesystem::path& path, GroundTruthSource source);

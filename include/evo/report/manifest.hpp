@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,11 +31,19 @@ struct Manifest {
   std::vector<ManifestInput> inputs;
   std::vector<std::pair<std::string, std::int64_t>> counts;  ///< "events", "tracks", "frames", ...
   std::vector<StageTime> stages;
+  std::optional<double> recorded_s;  ///< time from the first tracked event frame to the last
   std::vector<TimeNs> rebootstraps;  ///< stamps of the frames at which the odometry started anew
 };
 
 /// manifest.json; the peak memory of this process so far is added. Throws Error (kOutput).
 void WriteManifest(const std::filesystem::path& path, const Manifest& manifest);
+
+/// Reads one back. Values of parameters are text as WriteManifest was given it. Throws Error (kInput) with file and, if
+/// it is not JSON, line.
+Manifest ReadManifest(const std::filesystem::path& path);
+
+/// Seconds of the recording per second of tracking and odometry; empty unless events were tracked.
+std::optional<double> RealTimeFactor(const Manifest& manifest);
 
 /// Most memory that this process has held so far, MB (10^6 bytes).
 double PeakMemoryMb();

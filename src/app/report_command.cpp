@@ -1,0 +1,64 @@
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+#include "app/commands.hpp"
+#include "app/output_folder.hpp"
+#include "evo/core/logging.hpp"
+#include "evo/core/output_file.hpp"
+#include "evo/report/run_page.hpp"
+#include "evo/report/run_table.hpp"
+
+namespace evo::app {
+
+namespace {
+
+struct ReportArguments {
+  std::vector<std::filesystem::path> runs;
+  std::filesystem::path out;
+  std::string title = "Runs of evo-run";
+  std::string alignment;
+  bool force = false;
+};
+
+void Write(const std::filesystem::path& path, const std::string& text) {
+  OutputFile file(path);
+  file.stream() << text;
+  file.Commit();
+}
+
+void RunReport(const ReportArguments& arguments) {
+  SetUpLogging(0);
+  CheckOutputFolder(arguments.out, {"runs.csv", "runs.tex", "index.html"}, arguments.force);
+  const auto runs = ReadRunFolders(arguments.runs);
+  const std::string alignment = ChooseAlignment(runs, arguments.alignment);
+  const CsvTable table = MergeRuns(runs);
+  const std::string page = RunsPage(arguments.title, runs, table);
+  WriteCsv(arguments.out / "runs.csv", table);
+  Write(arguments.out / "runs.tex", RunsLatex(table, alignment));
+  Write(arguments.out / "index.html", page);
+  const auto failed = std::ranges::count_if(runs, [](const RunFolder& run) { return !run.failure.empty(); });
+  std::cout << "runs       " << runs.size() << ", of which " << failed << " failed\n"
+            << "results    " << (arguments.out / "index.html").string() << '\n';
+}
+
+}  // namespace
+
+Command AddReportCommand(CLI::App& app) {
+  auto arguments = std::make_shared<ReportArguments>();
+  auto* const parser = app.add_subcommand("report", "Compare many runs: one CSV, one LaTeX table, one HTML page");
+  parser->add_option("runs", arguments->runs, "--out folders of earlier runs")->required()->type_name("RUN_DIR");
+  parser->add_option("--out", arguments->out, "folder for runs.csv, runs.tex and index.html")
+      ->required()
+      ->type_name("DIR");
+  parser->add_option("--title", arguments->title, "heading of the page")->capture_default_str()->type_name("TEXT");
+  parser
+      ->add_option("--alignment", arguments->alignment,
+                   "the one that the LaTeX table shows; default: the first that all runs have")
+      ->type_name("NAME");
+  parser->add_flag("--force", arguments->force, "overwrite an earlier report in the --out folder");
+  parser->footer("Example:\n  evo-run report out/day1 out/day2 --out out/report");
+  return {parser, [arguments](const auto&) { RunReport(*arguments); }};
+}
+
+}  // namespace evo::app
