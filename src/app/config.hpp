@@ -2,6 +2,7 @@
 
 #include "evo/core/parameters.hpp"
 #include "evo/evaluation/evaluation.hpp"
+#include "evo/evaluation/track_truth.hpp"
 #include "evo/odometry/odometry.hpp"
 #include "evo/tracking/tracker_options.hpp"
 
@@ -13,6 +14,7 @@ struct Config {
     Register(parameters, tracker);
     Register(parameters, odometry);
     Register(parameters, evaluation);
+    Register(parameters, track_truth);
   }
   Config(const Config&) = delete;  // the parameters refer to the fields
   Config& operator=(const Config&) = delete;
@@ -20,6 +22,7 @@ struct Config {
   TrackerOptions tracker;
   OdometryOptions odometry;
   EvaluationOptions evaluation;
+  TrackTruthOptions track_truth;
   Parameters parameters;
 };
 

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <set>
@@ -13,6 +15,7 @@
 #include "app/options.hpp"
 #include "app/output_folder.hpp"
 #include "app/run_record.hpp"
+#include "app/track_evaluation.hpp"
 #include "evo/core/error.hpp"
 #include "evo/io/file_kind.hpp"
 #include "evo/report/tables.hpp"
@@ -25,6 +28,7 @@ struct EvaluateArguments {
   CommonOptions common;
   std::string estimate;
   std::string ground_truth;
+  TrackEvaluationArguments tracks;
   std::string align = "origin-scale,sim3";
   std::string association;
   std::optional<double> max_difference_s;
@@ -54,6 +58,16 @@ EvaluationInterval ParseInterval(const EvaluateArguments& arguments) {
     throw Error(ErrorKind::kUsage, "--from-stamp must come before --to-stamp");
   }
   return interval;
+}
+
+void RequireInputs(const EvaluateArguments& arguments) {
+  if (arguments.estimate.empty() && arguments.tracks.tracks.empty()) {
+    throw Error(ErrorKind::kUsage, "nothing to judge; give --estimate, --tracks or both");
+  }
+  if (!arguments.tracks.tracks.empty() && arguments.tracks.true_tracks.empty() &&
+      arguments.tracks.calibration.empty()) {
+    throw Error(ErrorKind::kUsage, "--tracks: give --true-tracks, or --ground-truth and --calibration");
+  }
 }
 
 /// NaN is in no range.
@@ -110,35 +124,50 @@ Inputs ReadInputs(const EvaluateArguments& arguments, AssociationOptions* associ
   return {ReadKitti(arguments.estimate), ReadKitti(arguments.ground_truth)};
 }
 
+/// Writes the results and returns the summary for people.
+std::string EvaluateTrajectory(const EvaluateArguments& arguments, const std::vector<Alignment>& alignments,
+                               const EvaluationInterval& interval, const Config& config, RunRecord* record) {
+  record->AddInput("estimate", arguments.estimate);
+  EvaluationOptions options = config.evaluation;
+  const auto [estimate, truth] = record->Time("read", [&] { return ReadInputs(arguments, &options.association); });
+  const auto evaluation = record->Time("evaluate", [&] {
+    return NamingPlace(arguments.estimate + " against " + arguments.ground_truth,
+                       [&, &e = estimate, &t = truth] { return Evaluate(t, e, alignments, interval, options); });
+  });
+  const std::string sequence = arguments.sequence.empty() ? SequenceName(arguments.ground_truth) : arguments.sequence;
+  record->Time("write", [&] { WriteEvaluationResults(arguments.out, sequence, evaluation, !arguments.no_plots); });
+
+  record->AddCount("estimated_poses", estimate.size());
+  record->AddCount("true_poses", truth.size());
+  record->AddCount("matched_poses", evaluation.alignments.front().errors.size());
+  return FormatSummary(evaluation);
+}
+
 void RunEvaluate(const EvaluateArguments& arguments, const std::vector<std::string>& command_line) {
+  RequireInputs(arguments);
   Config config;
   arguments.common.Apply(&config);
   Override(arguments, &config.evaluation);
   const auto alignments = ParseAlignments(arguments.align);
   const auto interval = ParseInterval(arguments);
+  const bool with_trajectory = !arguments.estimate.empty();
+  const bool with_tracks = !arguments.tracks.tracks.empty();
 
-  auto results = EvaluationResultNames(alignments);
-  results.emplace_back("manifest.json");
+  std::vector<std::string> results{"manifest.json"};
+  if (with_trajectory) std::ranges::copy(EvaluationResultNames(alignments), std::back_inserter(results));
+  if (with_tracks) std::ranges::copy(TrackEvaluationResultNames(), std::back_inserter(results));
   CheckOutputFolder(arguments.out, results, arguments.common.force);
   const InterruptGuard guard(arguments.out);
   RunRecord record(command_line, config.parameters);
-  record.AddInput("estimate", arguments.estimate);
-  record.AddInput("ground_truth", arguments.ground_truth);
-
-  EvaluationOptions options = config.evaluation;
-  const auto [estimate, truth] = record.Time("read", [&] { return ReadInputs(arguments, &options.association); });
-  const auto evaluation = record.Time("evaluate", [&] {
-    return NamingPlace(arguments.estimate + " against " + arguments.ground_truth,
-                       [&, &e = estimate, &t = truth] { return Evaluate(t, e, alignments, interval, options); });
-  });
-  const std::string sequence = arguments.sequence.empty() ? SequenceName(arguments.ground_truth) : arguments.sequence;
-  record.Time("write", [&] { WriteEvaluationResults(arguments.out, sequence, evaluation, !arguments.no_plots); });
-
-  record.AddCount("estimated_poses", estimate.size());
-  record.AddCount("true_poses", truth.size());
-  record.AddCount("matched_poses", evaluation.alignments.front().errors.size());
+  if (!arguments.ground_truth.empty()) record.AddInput("ground_truth", arguments.ground_truth);
+  std::string summary;
+  if (with_trajectory) summary += EvaluateTrajectory(arguments, alignments, interval, config, &record);
+  if (with_tracks) {
+    summary += RunTrackEvaluation(arguments.tracks, {arguments.ground_truth, arguments.common.Source(), interval},
+                                  config, arguments.out, !arguments.no_plots, &record);
+  }
   WriteManifest(std::filesystem::path(arguments.out) / "manifest.json", record.manifest);
-  std::cout << FormatSummary(evaluation);
+  std::cout << summary;
 }
 
 void AddComparisonOptions(CLI::App& command, EvaluateArguments& arguments) {
@@ -179,15 +208,15 @@ void AddComparisonOptions(CLI::App& command, EvaluateArguments& arguments) {
 
 Command AddEvaluateCommand(CLI::App& app) {
   auto arguments = std::make_shared<EvaluateArguments>();
-  auto* const parser = app.add_subcommand("evaluate", "Compare a trajectory with the ground truth");
+  auto* const parser = app.add_subcommand("evaluate", "Compare a trajectory, or feature tracks, with the ground truth");
+  auto* const ground_truth = parser
+                                 ->add_option("--ground-truth", arguments->ground_truth,
+                                              "MVSEC _gt.hdf5, UZH groundtruth.txt, TUM text or KITTI poses")
+                                 ->type_name("FILE");
   parser->add_option("--estimate", arguments->estimate, "estimated trajectory, TUM text or KITTI poses")
-      ->required()
-      ->type_name("FILE");
-  parser
-      ->add_option("--ground-truth", arguments->ground_truth,
-                   "MVSEC _gt.hdf5, UZH groundtruth.txt, TUM text or KITTI poses")
-      ->required()
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->needs(ground_truth);
+  AddTrackEvaluationOptions(*parser, arguments->tracks, ground_truth);
   AddAlignmentOption(*parser, arguments->align);
   AddComparisonOptions(*parser, *arguments);
   parser->add_option("--from-stamp", arguments->from, "judge only from this stamp of the ground truth on")
@@ -202,7 +231,8 @@ Command AddEvaluateCommand(CLI::App& app) {
   AddGroundTruthSourceOption(*parser, arguments->common);
   parser->footer(
       "Example:\n  evo-run evaluate --estimate out/trajectory.txt --ground-truth outdoor_day2_gt.hdf5 --align "
-      "origin-scale,sim3 --out out/evaluation");
+      "origin-scale,sim3 --out out/evaluation\n  evo-run evaluate --tracks out/tracks.txt --ground-truth "
+      "outdoor_day2_gt.hdf5 --calibration camchain.yaml --out out/track_quality");
   return {parser, [arguments](const auto& command_line) { RunEvaluate(*arguments, command_line); }};
 }
 

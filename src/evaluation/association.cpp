@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <functional>
-#include <optional>
 #include <queue>
 #include <tuple>
 #include <utility>
@@ -130,23 +129,12 @@ TimeNs UsualDifference(const std::string& association, const Trajectory& truth) 
   return intervals.empty() ? 0 : FromSeconds(2.0 * ComputeStatistics(intervals).median);
 }
 
-std::optional<SE3> InterpolateAt(const Trajectory& trajectory, TimeNs t, TimeNs max_interval) {
-  const auto after = std::ranges::lower_bound(trajectory, t, {}, &StampedPose::t);
-  if (after == trajectory.end()) return std::nullopt;
-  if (after->t == t) return after->T_world_cam;
-  if (after == trajectory.begin()) return std::nullopt;
-  const auto before = after - 1;
-  const TimeNs interval = after->t - before->t;
-  if (interval > max_interval) return std::nullopt;
-  return Interpolate(before->T_world_cam, after->T_world_cam, ToSeconds(t - before->t) / ToSeconds(interval));
-}
-
 std::vector<PosePair> PairWithInterpolated(const Trajectory& truth, const Trajectory& estimate, TimeNs offset,
                                            TimeNs max_interval) {
   std::vector<PosePair> pairs;
   for (const auto& pose : estimate) {
     const TimeNs t = pose.t + offset;
-    const auto T_world_cam_truth = InterpolateAt(truth, t, max_interval);
+    const auto T_world_cam_truth = PoseAt(truth, t, max_interval);
     if (T_world_cam_truth) pairs.push_back({pose.t, t, pose.T_world_cam, *T_world_cam_truth});
   }
   return pairs;

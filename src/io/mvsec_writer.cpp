@@ -31,7 +31,7 @@ class Hdf5Output {
   }
 
   hdf5::Handle CreateDataset(const std::string& name, const std::vector<hsize_t>& shape,
-                             const std::vector<hsize_t>& chunk = {}) {
+                             const std::vector<hsize_t>& chunk = {}, hid_t type = H5T_NATIVE_DOUBLE) {
     std::vector<hsize_t> most = shape;
     const hdf5::Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     if (!chunk.empty()) {
@@ -41,14 +41,32 @@ class Hdf5Output {
       H5Pset_deflate(creation.get(), kDeflateLevel);
     }
     const hdf5::Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), most.data()), H5Sclose);
-    return Checked(H5Dcreate2(file_.get(), name.c_str(), H5T_NATIVE_DOUBLE, space.get(), with_groups_.get(),
-                              creation.get(), H5P_DEFAULT),
-                   H5Dclose);
+    return Checked(
+        H5Dcreate2(file_.get(), name.c_str(), type, space.get(), with_groups_.get(), creation.get(), H5P_DEFAULT),
+        H5Dclose);
   }
 
   void Write(const std::string& name, const std::vector<hsize_t>& shape, const std::vector<double>& values) {
     const hdf5::Handle dataset = CreateDataset(name, shape);
     Check(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0);
+  }
+
+  /// Lengthens `dataset`, which has `rows` rows of the shape `row`, by those that `values` hold.
+  void Append(const hdf5::Handle& dataset, hsize_t rows, const std::vector<hsize_t>& row,
+              const std::vector<double>& values) {
+    hsize_t row_values = 1;
+    for (const hsize_t size : row) row_values *= size;
+    std::vector<hsize_t> block{values.size() / row_values};
+    block.insert(block.end(), row.begin(), row.end());
+    std::vector<hsize_t> shape = block;
+    shape[0] += rows;
+    std::vector<hsize_t> offset(block.size(), 0);
+    offset[0] = rows;
+    Check(H5Dset_extent(dataset.get(), shape.data()) >= 0);
+    const hdf5::Handle memory(H5Screate_simple(static_cast<int>(block.size()), block.data(), nullptr), H5Sclose);
+    const hdf5::Handle space(H5Dget_space(dataset.get()), H5Sclose);
+    Check(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, offset.data(), nullptr, block.data(), nullptr) >= 0);
+    Check(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, memory.get(), space.get(), H5P_DEFAULT, values.data()) >= 0);
   }
 
   void Commit() {
@@ -94,17 +112,8 @@ struct MvsecEventWriter::State {
 
   /// Writes the rows that wait.
   void Flush() {
-    const hsize_t count = waiting.size() / 4;
-    const hsize_t offset[] = {rows, 0};
-    const hsize_t block[] = {count, 4};
-    const hsize_t shape[] = {rows + count, 4};
-    output.Check(H5Dset_extent(dataset.get(), shape) >= 0);
-    const hdf5::Handle memory(H5Screate_simple(2, block, nullptr), H5Sclose);
-    const hdf5::Handle space(H5Dget_space(dataset.get()), H5Sclose);
-    output.Check(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, offset, nullptr, block, nullptr) >= 0);
-    output.Check(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, memory.get(), space.get(), H5P_DEFAULT, waiting.data()) >=
-                 0);
-    rows += count;
+    output.Append(dataset, rows, {4}, waiting);
+    rows += waiting.size() / 4;
     waiting.clear();
   }
 
@@ -141,11 +150,43 @@ void WriteMvsecEvents(const std::filesystem::path& path, const EventColumns& eve
   writer.Commit();
 }
 
+struct MvsecGroundTruthWriter::State {
+  explicit State(const std::filesystem::path& path) : output(path) {}
+
+  Hdf5Output output;
+  hdf5::Handle maps;
+  std::vector<double> stamps;  ///< s, of the maps written
+};
+
+MvsecGroundTruthWriter::MvsecGroundTruthWriter(const std::filesystem::path& path, const Trajectory& odometry,
+                                               const Trajectory& pose)
+    : state_(std::make_unique<State>(path)) {
+  WritePoses(&state_->output, "davis/left/odometry", odometry);
+  WritePoses(&state_->output, "davis/left/pose", pose);
+}
+
+MvsecGroundTruthWriter::~MvsecGroundTruthWriter() = default;
+
+void MvsecGroundTruthWriter::AppendDepth(TimeNs t, const DepthMap& map) {
+  const std::vector<hsize_t> image{static_cast<hsize_t>(map.height), static_cast<hsize_t>(map.width)};
+  if (!state_->maps.valid()) {
+    state_->maps = state_->output.CreateDataset("davis/left/depth_image_raw", {0, image[0], image[1]},
+                                                {1, image[0], image[1]}, H5T_NATIVE_FLOAT);
+  }
+  state_->output.Append(state_->maps, state_->stamps.size(), image, map.depth);
+  state_->stamps.push_back(NearestSeconds(t));
+}
+
+void MvsecGroundTruthWriter::Commit() {
+  if (state_->maps.valid()) {
+    state_->output.Check(state_->maps.Close());
+    state_->output.Write("davis/left/depth_image_raw_ts", {state_->stamps.size()}, state_->stamps);
+  }
+  state_->output.Commit();
+}
+
 void WriteMvsecGroundTruth(const std::filesystem::path& path, const Trajectory& odometry, const Trajectory& pose) {
-  Hdf5Output output(path);
-  WritePoses(&output, "davis/left/odometry", odometry);
-  WritePoses(&output, "davis/left/pose", pose);
-  output.Commit();
+  MvsecGroundTruthWriter(path, odometry, pose).Commit();
 }
 
 }  // namespace evo

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "evo/core/time.hpp"
@@ -14,5 +15,9 @@ struct StampedPose {
 
 /// Poses in strictly increasing order of time.
 using Trajectory = std::vector<StampedPose>;
+
+/// The pose at `t`, interpolated between its neighbours. Empty outside the trajectory, which is never extrapolated, and
+/// where the neighbours are more than `max_interval` apart.
+std::optional<SE3> PoseAt(const Trajectory& trajectory, TimeNs t, TimeNs max_interval);
 
 }  // namespace evo

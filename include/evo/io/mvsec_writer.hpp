@@ -6,6 +6,7 @@
 
 #include "evo/events/event_columns.hpp"
 #include "evo/geometry/trajectory.hpp"
+#include "evo/io/depth_maps.hpp"
 
 namespace evo {
 
@@ -29,7 +30,24 @@ class MvsecEventWriter {
 void WriteMvsecEvents(const std::filesystem::path& path, const EventColumns& events);
 
 /// Writes an MVSEC _gt.hdf5: `davis/left/odometry` (LOAM's place) and `davis/left/pose` (Cartographer's), N x 4 x 4
-/// row-major T_world_cam with their stamps in seconds. Throws Error (kOutput).
+/// row-major T_world_cam with their stamps in seconds, and, if there are any, depth maps of the raw image,
+/// `davis/left/depth_image_raw` (N x height x width float32, deflated) with `davis/left/depth_image_raw_ts`. The file
+/// appears whole on Commit() or not at all. Throws Error (kOutput).
+class MvsecGroundTruthWriter {
+ public:
+  MvsecGroundTruthWriter(const std::filesystem::path& path, const Trajectory& odometry, const Trajectory& pose);
+  ~MvsecGroundTruthWriter();
+
+  /// All maps in order of time and of one size.
+  void AppendDepth(TimeNs t, const DepthMap& map);
+  void Commit();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Poses alone, in one call.
 void WriteMvsecGroundTruth(const std::filesystem::path& path, const Trajectory& odometry, const Trajectory& pose);
 
 }  // namespace evo

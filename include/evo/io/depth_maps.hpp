@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "evo/core/time.hpp"
+
+namespace evo {
+
+/// For each pixel the z coordinate, in m, of what the camera sees there; NaN or 0 where that is not known.
+struct DepthMap {
+  int width = 0;              ///< px
+  int height = 0;             ///< px
+  std::vector<double> depth;  ///< height x width, row-major
+
+  double At(int x, int y) const {
+    return depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+  }
+};
+
+/// Whether an MVSEC _gt.hdf5 holds depth maps of the raw left image. False for a file of another kind.
+bool HasDepthMaps(const std::filesystem::path& path);
+
+/// The depth maps of the left camera's raw (distorted) image in an MVSEC _gt.hdf5: `davis/left/depth_image_raw`,
+/// N x height x width, and `davis/left/depth_image_raw_ts`, N stamps in s. Maps are read one at a time. All functions
+/// throw Error (kInput) with data set and row.
+class DepthMapReader {
+ public:
+  explicit DepthMapReader(const std::filesystem::path& path);
+  ~DepthMapReader();
+
+  /// In strictly increasing order, one or more.
+  const std::vector<TimeNs>& stamps() const;
+  int width() const;
+  int height() const;
+  /// Map number `index`. Negative depths are refused.
+  DepthMap Read(std::size_t index) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace evo

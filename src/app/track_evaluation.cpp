@@ -1,0 +1,133 @@
+#include "app/track_evaluation.hpp"
+
+#include <cstdio>
+
+#include "app/error_place.hpp"
+#include "app/recording.hpp"
+#include "evo/core/error.hpp"
+#include "evo/evaluation/track_accuracy.hpp"
+#include "evo/odometry/resampling.hpp"
+#include "evo/report/figures.hpp"
+#include "evo/report/tables.hpp"
+#include "evo/report/track_report.hpp"
+#include "evo/tracking/lifetime.hpp"
+
+namespace evo::app {
+
+namespace {
+
+struct Truth {
+  std::string source;
+  std::vector<TrueTrack> tracks;
+};
+
+Truth FindTruth(const TrackEvaluationArguments& arguments, const TruePoses& poses, const Config& config,
+                const std::vector<FeatureTrack>& tracks) {
+  const TimeNs max_gap = FromSeconds(config.evaluation.association.max_interpolation_s);
+  if (!arguments.true_tracks.empty()) {
+    return {"tracks", TruthFromTracks(tracks, ReadTracks(arguments.true_tracks), max_gap)};
+  }
+  const Camera camera = OpenCamera(arguments.calibration, arguments.sensor);
+  const Trajectory trajectory = ReadGroundTruth(poses.path, poses.source);
+  const bool with_depth = arguments.truth == "depth" || (arguments.truth == "auto" && HasDepthMaps(poses.path));
+  if (!with_depth) return {"triangulated", TruthFromTriangulation(tracks, trajectory, camera, max_gap)};
+  const DepthMapReader maps(poses.path);
+  return {"depth", TruthFromDepth(tracks, trajectory, camera, maps, max_gap, config.track_truth)};
+}
+
+/// The tracks of the interval, in the clock of the truth.
+Tracks ReadInterval(const std::filesystem::path& path, const EvaluationInterval& interval, TimeNs clock_offset) {
+  Tracks tracks = ReadTracks(path);
+  for (auto& observation : tracks) observation.t += clock_offset;
+  std::erase_if(tracks, [&](const TrackObservation& observation) {
+    return (interval.from && observation.t < *interval.from) || (interval.to && observation.t > *interval.to);
+  });
+  if (tracks.empty()) throw Error(ErrorKind::kNothingToDo, path.string() + ": no tracks in the interval to be judged");
+  return tracks;
+}
+
+LifetimeStatistics FindLifetimes(const Tracks& tracks, const ResamplingOptions& options) {
+  const Tracks in_frames = AreSynchronous(tracks) ? tracks : Resample(tracks, options);
+  std::vector<TimeNs> frames;
+  for (const auto& observation : in_frames) {
+    if (frames.empty() || frames.back() != observation.t) frames.push_back(observation.t);
+  }
+  return ComputeLifetimes(in_frames, frames);
+}
+
+std::string FormatLifetimes(const LifetimeStatistics& lifetimes) {
+  char line[160];
+  std::snprintf(line, sizeof line, "lifetime   %.1f +- %.1f frames, %.2f +- %.2f s (%lld tracks)\n",
+                lifetimes.in_frames.mean, lifetimes.in_frames.standard_deviation, lifetimes.in_seconds.mean,
+                lifetimes.in_seconds.standard_deviation, static_cast<long long>(lifetimes.tracks));
+  return line;
+}
+
+}  // namespace
+
+void AddTrackEvaluationOptions(CLI::App& command, TrackEvaluationArguments& arguments, CLI::Option* ground_truth) {
+  auto* const tracks = command.add_option("--tracks", arguments.tracks,
+                                          "tracks to judge: rows 'id t x y' or 't,x,y,theta,id', in any order");
+  tracks->type_name("FILE");
+  auto* const calibration =
+      command.add_option("--calibration", arguments.calibration, "of the tracks' camera: Kalibr camchain or calib.txt")
+          ->type_name("FILE")
+          ->needs(tracks)
+          ->needs(ground_truth);
+  command
+      .add_option("--true-tracks", arguments.true_tracks,
+                  "judge by this file of true tracks with the same ids, instead of --ground-truth and --calibration")
+      ->type_name("FILE")
+      ->needs(tracks)
+      ->excludes(calibration);
+  AddSensorOption(command, arguments.sensor);
+  command
+      .add_option("--track-truth", arguments.truth,
+                  "judge tracks by the depth maps of the ground truth or by triangulating them; auto: by what there is")
+      ->check(CLI::IsMember({"auto", "depth", "triangulated"}).description(""))
+      ->capture_default_str()
+      ->type_name("auto|depth|triangulated")
+      ->needs(calibration);
+  command.add_option("--track-thresholds", arguments.thresholds_px, "largest errors of a good track, px")
+      ->delimiter(',')
+      ->capture_default_str()
+      ->type_name("LIST")
+      ->needs(tracks);
+}
+
+std::vector<std::string> TrackEvaluationResultNames() {
+  return {"track_quality.csv", "track_errors.csv", "lifetime.csv"};
+}
+
+std::string RunTrackEvaluation(const TrackEvaluationArguments& arguments, const TruePoses& poses, const Config& config,
+                               const std::filesystem::path& out, bool with_plots, RunRecord* record) {
+  record->AddInput("tracks", arguments.tracks);
+  if (!arguments.true_tracks.empty()) record->AddInput("true_tracks", arguments.true_tracks);
+  if (!arguments.calibration.empty()) record->AddInput("calibration", arguments.calibration);
+  const TimeNs offset = FromSeconds(config.evaluation.association.estimate_clock_offset_s);
+  const Tracks tracks =
+      record->Time("read_tracks", [&] { return ReadInterval(arguments.tracks, poses.interval, offset); });
+  const auto accuracy = record->Time("evaluate_tracks", [&] {
+    return NamingPlace(arguments.tracks, [&] {
+      const auto grouped = GroupById(tracks);
+      const Truth truth = FindTruth(arguments, poses, config, grouped);
+      return EvaluateTracks(grouped, truth.tracks, truth.source, arguments.thresholds_px);
+    });
+  });
+  const auto lifetimes = FindLifetimes(tracks, config.odometry.resampling);
+  record->Time("write_tracks", [&] {
+    WriteTrackQuality(out / "track_quality.csv", accuracy);
+    WriteTrackErrors(out / "track_errors.csv", accuracy);
+    WriteLifetimes(out / "lifetime.csv", lifetimes);
+    if (!with_plots) return;
+    Gnuplot gnuplot(out / "plots");
+    gnuplot.Draw("track_error", TrackErrorFigure("track_error", accuracy));
+    gnuplot.Draw("lifetime", LifetimeFigure("lifetime", lifetimes));
+  });
+  record->AddCount("tracks", accuracy.tracks.size());
+  record->AddCount("track_observations", tracks.size());
+  record->AddCount("judged_tracks", static_cast<std::size_t>(Count(accuracy, TrackVerdict::kJudged)));
+  return FormatTrackAccuracy(accuracy) + FormatLifetimes(lifetimes);
+}
+
+}  // namespace evo::app
