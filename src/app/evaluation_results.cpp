@@ -28,9 +28,9 @@ void SayWhatIsMissing(const Evaluation& evaluation) {
   for (const auto& rpe : evaluation.alignments.front().rpe) {
     if (rpe.relations.front().statistics.count > 0) continue;
     spdlog::debug("no relative errors over {} ({} pairs): {}", rpe.delta.name, rpe.pairs,
-                 evaluation.has_stamps || rpe.delta.unit != DeltaUnit::kSeconds
-                     ? "the way is too short, or the tolerance too small"
-                     : "the files have no stamps");
+                  evaluation.has_stamps || rpe.delta.unit != DeltaUnit::kSeconds
+                      ? "the way is too short, or the tolerance too small"
+                      : "the files have no stamps");
   }
 }
 
