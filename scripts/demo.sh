@@ -9,15 +9,16 @@ command=(build/release/bin/evo-run run --events data_samples/street --draw-every
 rm -rf "$out"
 printf '\n$ %s\n' "${command[*]}"
 "${command[@]}"
+build/release/bin/evo-run report "$out" --out "$out/report" --title "Demo of evo-run"
 cat <<END
 
 In $PWD/$out:
-  trajectory.txt                        a pose for each frame (TUM: stamp, position, quaternion)
-  map.ply                               the points of the map
+  report/index.html                     one page with everything below
+  trajectory.txt, map.ply               a pose for each frame (TUM: stamp, position, quaternion); the points of the map
   tracks.txt, lifetime.csv              the feature tracks and how long they live
-  summary.csv, errors.csv               the errors against the ground truth, in all and pose by pose
-  plots/trajectory.svg, errors.svg,     the trajectory, its errors and the lifetimes (.pdf too)
-        lifetime.svg
-  images/frame_*.png                    event frames with the tracks drawn in
+  summary.csv, metrics.csv, errors.csv  the errors against the ground truth, in all, all statistics, and pose by pose
+  tables/*.tex                          lifetimes and errors for a paper
+  plots/*.svg, *.pdf                    trajectory, errors, scale drift, lifetimes, live features
+  images/four_frames_*.png              event frames with the tracks drawn in
   manifest.json                         version, parameters, inputs, counts and times of this run
 END
