@@ -105,7 +105,7 @@ TEST(TrackAccuracy, ExpectedAgeIsTheAgeOfStableTracksTimesTheirShare) {
       11, 0.1, [](int) { return 20.0; }, 1.0);  // was never there
   made.Add(
       6, 0.1, [](int i) { return i < 3 ? 0.0 : 9.0; }, 0.5);
-  const auto& at_5px = made.Evaluate({5.0}).thresholds[0];
+  const auto at_5px = made.Evaluate({5.0}).thresholds[0];
   EXPECT_DOUBLE_EQ(at_5px.outlier_share, 0.5);
   EXPECT_DOUBLE_EQ(at_5px.exceeding_share, 0.75);
   EXPECT_NEAR(at_5px.feature_age_s.mean, 0.6, 1e-12);
