@@ -94,6 +94,11 @@ void Override(const EvaluateArguments& arguments, EvaluationOptions* options) {
   options->rpe.required = !arguments.rpe.empty();
   SetSeconds("--max-difference", arguments.max_difference_s, 0.0, 1e3, &options->association.max_difference_s);
   SetSeconds("--time-offset", arguments.time_offset_s, -1e9, 1e9, &options->association.estimate_clock_offset_s);
+  if (arguments.max_difference_s && options->association.association == "interpolate") {
+    throw Error(ErrorKind::kUsage,
+                "--max-difference: the association interpolate, which is the default, compares no stamps; choose "
+                "--association nearest, unique or nearest-truth");
+  }
   ParseDeltas(options->rpe.deltas);  // refuses a wrong --rpe before anything is read
 }
 

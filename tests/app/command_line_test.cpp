@@ -45,7 +45,7 @@ TEST_F(CommandLineTest, MistakesOfUsageEndWithTwo) {
   EXPECT_EQ(Refusal(Evaluate("gt.txt", "gt.txt", "-v -q")), 2);
   for (const char* mistake : {"--rpe 10", "--rpe 10x", "--rpe-pairs some", "--project zz", "--forward back",
                               "--association best", "--max-difference=-1", "--time-offset=nan", "--max-difference nan",
-                              "--max-difference x", "--align none:5", "--align sim3:0"}) {
+                              "--max-difference x", "--max-difference 0.02", "--align none:5", "--align sim3:0"}) {
     EXPECT_EQ(Refusal(Evaluate("gt.txt", "gt.txt", mistake)), 2) << mistake;
   }
   EXPECT_FALSE(fs::exists(folder / "result"));
