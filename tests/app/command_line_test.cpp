@@ -33,6 +33,14 @@ TEST_F(CommandLineTest, HelpShowsAnExampleOfEveryCommand) {
   EXPECT_TRUE(out.starts_with("evo-run "));
 }
 
+TEST_F(CommandLineTest, EvaluateShowsEachKindOfUse) {
+  ASSERT_EQ(Run("evaluate --help"), 0);
+  for (const char* use : {"\n  evo-run evaluate --estimate out/trajectory.txt", "kitti_lengths_m=", "--rpe 1s,10m",
+                          "\n  evo-run evaluate --tracks out/tracks.txt", "--true-tracks true_tracks.txt"}) {
+    EXPECT_NE(out.find(use), std::string::npos) << use;
+  }
+}
+
 TEST_F(CommandLineTest, MistakesOfUsageEndWithTwo) {
   for (const char* words : {"", "fly", "--fly", "config", "config --print --check x.yaml", "evaluate"}) {
     EXPECT_EQ(Refusal(words), 2) << words;
