@@ -24,6 +24,22 @@ namespace evo::app {
 
 namespace {
 
+constexpr char kExamples[] =
+    "Example:\n"
+    "  evo-run evaluate --estimate out/trajectory.txt --ground-truth outdoor_day2_gt.hdf5 --align origin-scale,sim3 "
+    "--out out/evaluation\n"
+    "By evo's rules, relative errors from every pose, only seconds 10 to 40 of the ground truth:\n"
+    "  evo-run evaluate --estimate estimate.txt --ground-truth truth.txt --align se3 --association nearest "
+    "--rpe 1s,10m --rpe-pairs all --from-stamp 10 --to-stamp 40 --out out/comparison\n"
+    "KITTI poses, with KITTI's segments of these lengths (m):\n"
+    "  evo-run evaluate --estimate 00_estimate.txt --ground-truth 00.txt --align none,sim3 "
+    "--set evaluation.kitti_lengths_m=50,100,200 --out out/kitti\n"
+    "Feature tracks, by depth maps or triangulation, then by true tracks:\n"
+    "  evo-run evaluate --tracks out/tracks.txt --ground-truth outdoor_day2_gt.hdf5 --calibration camchain.yaml "
+    "--out out/track_quality\n"
+    "  evo-run evaluate --tracks haste_tracks.txt --true-tracks true_tracks.txt --track-thresholds 3,5 "
+    "--out out/haste_quality";
+
 struct EvaluateArguments {
   CommonOptions common;
   std::string estimate;
@@ -94,6 +110,11 @@ void Override(const EvaluateArguments& arguments, EvaluationOptions* options) {
   options->rpe.required = !arguments.rpe.empty();
   SetSeconds("--max-difference", arguments.max_difference_s, 0.0, 1e3, &options->association.max_difference_s);
   SetSeconds("--time-offset", arguments.time_offset_s, -1e9, 1e9, &options->association.estimate_clock_offset_s);
+  if (arguments.max_difference_s && options->association.association == "interpolate") {
+    throw Error(ErrorKind::kUsage,
+                "--max-difference: the association interpolate, which is the default, compares no stamps; choose "
+                "--association nearest, unique or nearest-truth");
+  }
   ParseDeltas(options->rpe.deltas);  // refuses a wrong --rpe before anything is read
 }
 
@@ -124,23 +145,27 @@ Inputs ReadInputs(const EvaluateArguments& arguments, AssociationOptions* associ
   return {ReadKitti(arguments.estimate), ReadKitti(arguments.ground_truth)};
 }
 
-/// Writes the results and returns the summary for people.
-std::string EvaluateTrajectory(const EvaluateArguments& arguments, const std::vector<Alignment>& alignments,
-                               const EvaluationInterval& interval, const Config& config, RunRecord* record) {
+Evaluation EvaluateTrajectory(const EvaluateArguments& arguments, const std::vector<Alignment>& alignments,
+                              const EvaluationInterval& interval, const Config& config, RunRecord* record) {
   record->AddInput("estimate", arguments.estimate);
   EvaluationOptions options = config.evaluation;
   const auto [estimate, truth] = record->Time("read", [&] { return ReadInputs(arguments, &options.association); });
-  const auto evaluation = record->Time("evaluate", [&] {
+  auto evaluation = record->Time("evaluate", [&] {
     return NamingPlace(arguments.estimate + " against " + arguments.ground_truth,
                        [&, &e = estimate, &t = truth] { return Evaluate(t, e, alignments, interval, options); });
   });
-  const std::string sequence = arguments.sequence.empty() ? SequenceName(arguments.ground_truth) : arguments.sequence;
-  record->Time("write", [&] { WriteEvaluationResults(arguments.out, sequence, evaluation, !arguments.no_plots); });
-
   record->AddCount("estimated_poses", estimate.size());
   record->AddCount("true_poses", truth.size());
   record->AddCount("matched_poses", evaluation.alignments.front().errors.size());
-  return FormatSummary(evaluation);
+  return evaluation;
+}
+
+void WriteResults(const EvaluateArguments& arguments, const std::optional<Evaluation>& trajectory,
+                  const std::optional<TrackEvaluation>& tracks) {
+  const bool with_plots = !arguments.no_plots;
+  const std::string sequence = arguments.sequence.empty() ? SequenceName(arguments.ground_truth) : arguments.sequence;
+  if (trajectory) WriteEvaluationResults(arguments.out, sequence, *trajectory, with_plots);
+  if (tracks) WriteTrackEvaluation(arguments.out, *tracks, with_plots);
 }
 
 void RunEvaluate(const EvaluateArguments& arguments, const std::vector<std::string>& command_line) {
@@ -160,14 +185,18 @@ void RunEvaluate(const EvaluateArguments& arguments, const std::vector<std::stri
   const InterruptGuard guard(arguments.out);
   RunRecord record(command_line, config.parameters);
   if (!arguments.ground_truth.empty()) record.AddInput("ground_truth", arguments.ground_truth);
-  std::string summary;
-  if (with_trajectory) summary += EvaluateTrajectory(arguments, alignments, interval, config, &record);
+  std::optional<Evaluation> trajectory;
+  std::optional<TrackEvaluation> tracks;
+  if (with_trajectory) trajectory = EvaluateTrajectory(arguments, alignments, interval, config, &record);
   if (with_tracks) {
-    summary += RunTrackEvaluation(arguments.tracks, {arguments.ground_truth, arguments.common.Source(), interval},
-                                  config, arguments.out, !arguments.no_plots, &record);
+    const TruePoses poses{arguments.ground_truth, arguments.common.Source(), interval};
+    tracks = EvaluateTracks(arguments.tracks, poses, config, &record);
   }
+  // Only now, so that a fault of the one does not leave the other's results alone.
+  record.Time("write", [&] { WriteResults(arguments, trajectory, tracks); });
   WriteManifest(std::filesystem::path(arguments.out) / "manifest.json", record.manifest);
-  std::cout << summary;
+  if (trajectory) std::cout << FormatSummary(*trajectory);
+  if (tracks) std::cout << FormatTrackEvaluation(*tracks);
 }
 
 void AddComparisonOptions(CLI::App& command, EvaluateArguments& arguments) {
@@ -181,12 +210,14 @@ void AddComparisonOptions(CLI::App& command, EvaluateArguments& arguments) {
       "how poses find each other: interpolate the truth (default), evo's nearest, TUM's unique (evaluate_ate) or "
       "nearest-truth (evaluate_rpe)");
   command
-      .add_option("--max-difference", arguments.max_difference_s,
-                  "stamps farther apart form no pair, unless interpolated; default: 0.01 nearest, 0.02 unique, twice "
-                  "the truth's interval nearest-truth")
+      .add_option(
+          "--max-difference", arguments.max_difference_s,
+          "stamps (s) farther apart form no pair; default: 0.01 for nearest, 0.02 for unique, twice the truth's "
+          "median interval for nearest-truth; not for interpolate")
       ->type_name("S");
   command
-      .add_option("--time-offset", arguments.time_offset_s, "added to the estimate's stamps; write --time-offset=-0.1")
+      .add_option("--time-offset", arguments.time_offset_s,
+                  "seconds added to the stamps of the estimate and of the tracks; write --time-offset=-0.1")
       ->type_name("S");
   command
       .add_option(
@@ -201,7 +232,7 @@ void AddComparisonOptions(CLI::App& command, EvaluateArguments& arguments) {
   add_choice("--up", arguments.up, {"auto", "x", "y", "z", "-x", "-y", "-z"}, "auto|[-]x|y|z",
              "axis of the truth's world that points up; write --up=-y");
   add_choice("--forward", arguments.forward, {"travel", "body"}, "travel|body",
-             "longitudinal is along the direction of travel (default) or the true camera's axis");
+             "longitudinal is along the direction of travel in the ground plane (default) or the true camera's axis");
 }
 
 }  // namespace
@@ -219,9 +250,14 @@ Command AddEvaluateCommand(CLI::App& app) {
   AddTrackEvaluationOptions(*parser, arguments->tracks, ground_truth);
   AddAlignmentOption(*parser, arguments->align);
   AddComparisonOptions(*parser, *arguments);
-  parser->add_option("--from-stamp", arguments->from, "judge only from this stamp of the ground truth on")
+  parser
+      ->add_option("--from-stamp", arguments->from,
+                   "judge only from this stamp of the ground truth on, s; KITTI: number of the pose, from 0")
       ->type_name("S");
-  parser->add_option("--to-stamp", arguments->to, "judge only up to this stamp")->type_name("S");
+  parser
+      ->add_option("--to-stamp", arguments->to,
+                   "judge only up to this stamp, inclusive; true tracks count only that far, too")
+      ->type_name("S");
   parser->add_option("--sequence", arguments->sequence, "name in the tables; default: that of the ground truth")
       ->type_name("NAME");
   parser->add_option("--out", arguments->out, "folder for the results")->required()->type_name("DIR");
@@ -229,10 +265,7 @@ Command AddEvaluateCommand(CLI::App& app) {
   AddConfigurationOptions(*parser, arguments->common);
   AddComputeOptions(*parser, arguments->common);
   AddGroundTruthSourceOption(*parser, arguments->common);
-  parser->footer(
-      "Example:\n  evo-run evaluate --estimate out/trajectory.txt --ground-truth outdoor_day2_gt.hdf5 --align "
-      "origin-scale,sim3 --out out/evaluation\n  evo-run evaluate --tracks out/tracks.txt --ground-truth "
-      "outdoor_day2_gt.hdf5 --calibration camchain.yaml --out out/track_quality");
+  parser->footer(kExamples);
   return {parser, [arguments](const auto& command_line) { RunEvaluate(*arguments, command_line); }};
 }
 

@@ -1,16 +1,15 @@
 #include "app/track_evaluation.hpp"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "app/error_place.hpp"
 #include "app/recording.hpp"
 #include "evo/core/error.hpp"
-#include "evo/evaluation/track_accuracy.hpp"
 #include "evo/odometry/resampling.hpp"
 #include "evo/report/figures.hpp"
 #include "evo/report/tables.hpp"
 #include "evo/report/track_report.hpp"
-#include "evo/tracking/lifetime.hpp"
 
 namespace evo::app {
 
@@ -46,8 +45,10 @@ Tracks ReadInterval(const std::filesystem::path& path, const EvaluationInterval&
   return tracks;
 }
 
-LifetimeStatistics FindLifetimes(const Tracks& tracks, const ResamplingOptions& options) {
-  const Tracks in_frames = AreSynchronous(tracks) ? tracks : Resample(tracks, options);
+/// Two features make a frame where only lifetimes are asked for.
+bool HaveFrames(const Tracks& tracks) { return AreSynchronous(tracks, 2); }
+
+LifetimeStatistics FindLifetimes(const Tracks& in_frames) {
   std::vector<TimeNs> frames;
   for (const auto& observation : in_frames) {
     if (frames.empty() || frames.back() != observation.t) frames.push_back(observation.t);
@@ -55,12 +56,11 @@ LifetimeStatistics FindLifetimes(const Tracks& tracks, const ResamplingOptions& 
   return ComputeLifetimes(in_frames, frames);
 }
 
-std::string FormatLifetimes(const LifetimeStatistics& lifetimes) {
-  char line[160];
-  std::snprintf(line, sizeof line, "lifetime   %.1f +- %.1f frames, %.2f +- %.2f s (%lld tracks)\n",
-                lifetimes.in_frames.mean, lifetimes.in_frames.standard_deviation, lifetimes.in_seconds.mean,
-                lifetimes.in_seconds.standard_deviation, static_cast<long long>(lifetimes.tracks));
-  return line;
+/// Nothing behind the interval is asked of a track.
+void CutVisibility(std::vector<TrueTrack>* truth, std::optional<TimeNs> end) {
+  for (auto& track : *truth) {
+    if (end && track.visible_until) track.visible_until = std::min(*track.visible_until, *end);
+  }
 }
 
 }  // namespace
@@ -99,35 +99,54 @@ std::vector<std::string> TrackEvaluationResultNames() {
   return {"track_quality.csv", "track_errors.csv", "lifetime.csv"};
 }
 
-std::string RunTrackEvaluation(const TrackEvaluationArguments& arguments, const TruePoses& poses, const Config& config,
-                               const std::filesystem::path& out, bool with_plots, RunRecord* record) {
+TrackEvaluation EvaluateTracks(const TrackEvaluationArguments& arguments, const TruePoses& poses, const Config& config,
+                               RunRecord* record) {
   record->AddInput("tracks", arguments.tracks);
   if (!arguments.true_tracks.empty()) record->AddInput("true_tracks", arguments.true_tracks);
   if (!arguments.calibration.empty()) record->AddInput("calibration", arguments.calibration);
   const TimeNs offset = FromSeconds(config.evaluation.association.estimate_clock_offset_s);
   const Tracks tracks =
       record->Time("read_tracks", [&] { return ReadInterval(arguments.tracks, poses.interval, offset); });
-  const auto accuracy = record->Time("evaluate_tracks", [&] {
+  TrackEvaluation evaluation;
+  evaluation.accuracy = record->Time("evaluate_tracks", [&] {
     return NamingPlace(arguments.tracks, [&] {
       const auto grouped = GroupById(tracks);
-      const Truth truth = FindTruth(arguments, poses, config, grouped);
+      Truth truth = FindTruth(arguments, poses, config, grouped);
+      CutVisibility(&truth.tracks, poses.interval.to);
       return EvaluateTracks(grouped, truth.tracks, truth.source, arguments.thresholds_px);
     });
   });
-  const auto lifetimes = FindLifetimes(tracks, config.odometry.resampling);
-  record->Time("write_tracks", [&] {
-    WriteTrackQuality(out / "track_quality.csv", accuracy);
-    WriteTrackErrors(out / "track_errors.csv", accuracy);
-    WriteLifetimes(out / "lifetime.csv", lifetimes);
-    if (!with_plots) return;
-    Gnuplot gnuplot(out / "plots");
-    gnuplot.Draw("track_error", TrackErrorFigure("track_error", accuracy));
-    gnuplot.Draw("lifetime", LifetimeFigure("lifetime", lifetimes));
-  });
-  record->AddCount("tracks", accuracy.tracks.size());
+  const auto& resampling = config.odometry.resampling;
+  if (!HaveFrames(tracks)) evaluation.made_frames_s = resampling.frame_interval_s;
+  evaluation.lifetimes = FindLifetimes(evaluation.made_frames_s ? Resample(tracks, resampling) : tracks);
+  record->AddCount("tracks", evaluation.accuracy.tracks.size());
   record->AddCount("track_observations", tracks.size());
-  record->AddCount("judged_tracks", static_cast<std::size_t>(Count(accuracy, TrackVerdict::kJudged)));
-  return FormatTrackAccuracy(accuracy) + FormatLifetimes(lifetimes);
+  record->AddCount("judged_tracks", static_cast<std::size_t>(Count(evaluation.accuracy, TrackVerdict::kJudged)));
+  return evaluation;
+}
+
+void WriteTrackEvaluation(const std::filesystem::path& folder, const TrackEvaluation& evaluation, bool with_plots) {
+  WriteTrackQuality(folder / "track_quality.csv", evaluation.accuracy);
+  WriteTrackErrors(folder / "track_errors.csv", evaluation.accuracy);
+  WriteLifetimes(folder / "lifetime.csv", evaluation.lifetimes);
+  if (!with_plots) return;
+  Gnuplot gnuplot(folder / "plots");
+  gnuplot.Draw("track_error", TrackErrorFigure("track_error", evaluation.accuracy));
+  gnuplot.Draw("lifetime", LifetimeFigure("lifetime", evaluation.lifetimes));
+}
+
+std::string FormatTrackEvaluation(const TrackEvaluation& evaluation) {
+  const auto& lifetimes = evaluation.lifetimes;
+  char line[200];
+  std::snprintf(line, sizeof line, "lifetime   %.1f +- %.1f frames, %.2f +- %.2f s (%lld tracks",
+                lifetimes.in_frames.mean, lifetimes.in_frames.standard_deviation, lifetimes.in_seconds.mean,
+                lifetimes.in_seconds.standard_deviation, static_cast<long long>(lifetimes.tracks));
+  std::string text = FormatTrackAccuracy(evaluation.accuracy) + line;
+  if (evaluation.made_frames_s) {
+    std::snprintf(line, sizeof line, ", in frames made every %g s", *evaluation.made_frames_s);
+    text += line;
+  }
+  return text + ")\n";
 }
 
 }  // namespace evo::app

@@ -2,12 +2,15 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/config.hpp"
 #include "app/run_record.hpp"
+#include "evo/evaluation/track_accuracy.hpp"
 #include "evo/io/trajectory_io.hpp"
+#include "evo/tracking/lifetime.hpp"
 
 namespace evo::app {
 
@@ -35,9 +38,19 @@ struct TruePoses {
 /// track_quality.csv, track_errors.csv and lifetime.csv.
 std::vector<std::string> TrackEvaluationResultNames();
 
-/// Judges the tracks, writes those files and plots/track_error and plots/lifetime, and returns the summary for people.
-/// The lifetimes of asynchronous tracks are those of the frames that the odometry makes of them. Throws Error.
-std::string RunTrackEvaluation(const TrackEvaluationArguments& arguments, const TruePoses& poses, const Config& config,
-                               const std::filesystem::path& out, bool with_plots, RunRecord* record);
+struct TrackEvaluation {
+  TrackAccuracy accuracy;
+  LifetimeStatistics lifetimes;
+  /// Asynchronous tracks live in frames that are made as the odometry makes them, this far apart; else empty.
+  std::optional<double> made_frames_s;
+};
+
+/// Reads and judges the tracks. Throws Error.
+TrackEvaluation EvaluateTracks(const TrackEvaluationArguments& arguments, const TruePoses& poses, const Config& config,
+                               RunRecord* record);
+/// Writes those files and plots/track_error and plots/lifetime. Throws Error.
+void WriteTrackEvaluation(const std::filesystem::path& folder, const TrackEvaluation& evaluation, bool with_plots);
+/// The summary for people.
+std::string FormatTrackEvaluation(const TrackEvaluation& evaluation);
 
 }  // namespace evo::app

@@ -1,5 +1,6 @@
 #include "evo/evaluation/matched_path.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <sstream>
@@ -52,7 +53,7 @@ std::vector<double> ParseLengths(const std::string& text, double path_m) {
                   "'" + item + "' is no length; give positive metres or shares of the path, for example 100,50m,10%");
     }
     if (unit == "%") length *= path_m / 100.0;
-    if (length > 0.0) lengths.push_back(length);
+    if (length > 0.0 && std::ranges::find(lengths, length) == lengths.end()) lengths.push_back(length);
   }
   if (text.empty()) throw Error(ErrorKind::kConfiguration, "no length given; for example 100,50m,10%");
   return lengths;

@@ -5,14 +5,26 @@
 
 namespace evo {
 
+namespace {
+
+constexpr double kRounding = 1e-12;  // relative
+
+}  // namespace
+
 PositionSearch::PositionSearch(std::vector<Eigen::Vector3d> positions) : positions_(std::move(positions)) {
   levels_.emplace_back();
-  for (const auto& position : positions_) levels_[0].emplace_back(position);
-  while (levels_.back().size() > 1) {
+  for (const auto& position : positions_) levels_[0].push_back({Eigen::AlignedBox3d(position)});
+  for (std::size_t length = 2; levels_.back().size() > 1; length *= 2) {
     const auto& below = levels_.back();
-    std::vector<Eigen::AlignedBox3d> level;
+    std::vector<Run> level;
     for (std::size_t i = 0; i < below.size(); i += 2) {
-      level.push_back(i + 1 < below.size() ? below[i].merged(below[i + 1]) : below[i]);
+      Run run = below[i];
+      if (i + 1 < below.size()) run.box.extend(below[i + 1].box);
+      const std::size_t first = level.size() * length;
+      for (std::size_t k = first; k < std::min(first + length, positions_.size()); ++k) {
+        run.radius = std::max(run.radius, (positions_[k] - run.box.center()).norm());
+      }
+      level.push_back(run);
     }
     levels_.push_back(std::move(level));
   }
@@ -21,7 +33,8 @@ PositionSearch::PositionSearch(std::vector<Eigen::Vector3d> positions) : positio
 bool PositionSearch::MayBeFar(std::size_t level, std::size_t node, const Eigen::Vector3d& center,
                               double distance) const {
   if (level == 0) return (positions_[node] - center).norm() >= distance;
-  const auto& box = levels_[level][node];
+  const auto& [box, radius] = levels_[level][node];
+  if ((box.center() - center).norm() + radius < (1.0 - kRounding) * distance) return false;
   const Eigen::Vector3d to_corner = (box.min() - center).cwiseAbs().cwiseMax((box.max() - center).cwiseAbs());
   return to_corner.norm() >= distance;
 }

@@ -20,6 +20,7 @@ namespace {
 
 constexpr double kUnitTolerance = 1e-3;  // files with five decimals are off by 1e-5
 constexpr double kLargestSeconds = 9e9;
+constexpr double kFarthest = 1e12;  // m; squares of it still leave digits for the errors
 constexpr char kExpectedText[] = "a trajectory of lines 't px py pz qx qy qz qw'";
 
 using RowMajor4d = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
@@ -28,6 +29,8 @@ std::string NotLater(TimeNs previous, TimeNs t) {
   return "the stamp " + FormatTime(t) + " s is not later than the one before, " + FormatTime(previous) +
          " s; sort the poses by time and drop repeated ones";
 }
+
+bool IsPlace(const Eigen::Vector3d& position) { return position.cwiseAbs().maxCoeff() <= kFarthest; }
 
 StampedPose ParsePose(const TextLines& lines, std::string_view line) {
   const auto fields = SplitFields(line);
@@ -40,12 +43,14 @@ StampedPose ParsePose(const TextLines& lines, std::string_view line) {
     if (!value) throw lines.Failure(Quote(fields[i + 1]) + " is not a finite number");
     v[i] = *value;
   }
+  const Eigen::Vector3d position(v[0], v[1], v[2]);
+  if (!IsPlace(position)) throw lines.Failure("the position is more than 1e12 m from the origin");
   const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
   if (!(std::abs(rotation.norm() - 1.0) < kUnitTolerance)) {
     throw lines.Failure("the quaternion has the norm " + FormatNumber(rotation.norm()) +
                         ", not 1; expected 't px py pz qx qy qz qw'");
   }
-  return {*t, {rotation, {v[0], v[1], v[2]}}};
+  return {*t, {rotation, position}};
 }
 
 SE3 ToPose(const RowMajor4d& T) {
@@ -62,6 +67,7 @@ std::string RigidFault(const RowMajor4d& T) {
   if (!((T.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() < kUnitTolerance)) {
     return "the pose's last row is not 0 0 0 1";
   }
+  if (!IsPlace(T.topRightCorner<3, 1>())) return "the position is more than 1e12 m from the origin";
   return "";
 }
 

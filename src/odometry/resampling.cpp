@@ -13,7 +13,6 @@ namespace evo {
 
 namespace {
 
-constexpr int kSharedStamp = 8;           // sightings at one stamp that make it a frame
 constexpr std::size_t kFitSightings = 4;  // fewer are interpolated instead
 constexpr double kOffSensorPx = 1.0;      // trackers may place a border feature a little outside
 constexpr double kMisfitShare = 0.02;     // of sightings that a calibration may fail to explain
@@ -78,11 +77,11 @@ void Register(Parameters& parameters, ResamplingOptions& options) {
                  "asynchronous tracks: no interpolation across longer gaps");
 }
 
-bool AreSynchronous(const Tracks& tracks) {
+bool AreSynchronous(const Tracks& tracks, int least) {
   std::size_t shared = 0;
   for (auto begin = tracks.begin(); begin != tracks.end();) {
     const auto end = std::find_if(begin, tracks.end(), [&](const Sighting& s) { return s.t != begin->t; });
-    if (end - begin >= kSharedStamp) shared += static_cast<std::size_t>(end - begin);
+    if (end - begin >= least) shared += static_cast<std::size_t>(end - begin);
     begin = end;
   }
   return 2 * shared > tracks.size();
@@ -96,10 +95,12 @@ Tracks Resample(const Tracks& tracks, const ResamplingOptions& options) {
   const TimeNs start = tracks.front().t;
   const TimeNs interval = FromSeconds(options.frame_interval_s);
   for (const auto& [id, track] : by_id) {
-    const TimeNs first_frame = (track.front().t - start + interval - 1) / interval;
-    for (TimeNs t = start + first_frame * interval; t <= track.back().t; t += interval) {
+    const auto frame_from = [&](TimeNs t) { return start + (t - start + interval - 1) / interval * interval; };
+    for (TimeNs t = frame_from(track.front().t); t <= track.back().t;) {
       const auto position = PositionAt(track, t, options);
       if (position) resampled.push_back({id, t, position->x(), position->y()});
+      // A gap may hold more frames than can be counted through.
+      t = position ? t + interval : frame_from(std::ranges::lower_bound(track, t, {}, &Sighting::t)->t);
     }
   }
   std::ranges::stable_sort(resampled, {}, &Sighting::t);  // ids are in order already

@@ -33,6 +33,14 @@ TEST_F(CommandLineTest, HelpShowsAnExampleOfEveryCommand) {
   EXPECT_TRUE(out.starts_with("evo-run "));
 }
 
+TEST_F(CommandLineTest, EvaluateShowsEachKindOfUse) {
+  ASSERT_EQ(Run("evaluate --help"), 0);
+  for (const char* use : {"\n  evo-run evaluate --estimate out/trajectory.txt", "kitti_lengths_m=", "--rpe 1s,10m",
+                          "\n  evo-run evaluate --tracks out/tracks.txt", "--true-tracks true_tracks.txt"}) {
+    EXPECT_NE(out.find(use), std::string::npos) << use;
+  }
+}
+
 TEST_F(CommandLineTest, MistakesOfUsageEndWithTwo) {
   for (const char* words : {"", "fly", "--fly", "config", "config --print --check x.yaml", "evaluate"}) {
     EXPECT_EQ(Refusal(words), 2) << words;
@@ -45,7 +53,7 @@ TEST_F(CommandLineTest, MistakesOfUsageEndWithTwo) {
   EXPECT_EQ(Refusal(Evaluate("gt.txt", "gt.txt", "-v -q")), 2);
   for (const char* mistake : {"--rpe 10", "--rpe 10x", "--rpe-pairs some", "--project zz", "--forward back",
                               "--association best", "--max-difference=-1", "--time-offset=nan", "--max-difference nan",
-                              "--max-difference x", "--align none:5", "--align sim3:0"}) {
+                              "--max-difference x", "--max-difference 0.02", "--align none:5", "--align sim3:0"}) {
     EXPECT_EQ(Refusal(Evaluate("gt.txt", "gt.txt", mistake)), 2) << mistake;
   }
   EXPECT_FALSE(fs::exists(folder / "result"));

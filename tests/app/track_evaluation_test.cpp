@@ -132,6 +132,8 @@ TEST_F(TrackEvaluationTest, OnlyTheIntervalIsJudged) {
   ASSERT_EQ(Run(arguments + " --from-stamp 0.1 --to-stamp 0.2" + To("part")), 0) << err;
   EXPECT_EQ(Quality("part")["compared_positions "], "2");
   EXPECT_EQ(Quality("part")["error_max "], "3.000000000");
+  // Of the 0.1 s asked for, though the point is seen for longer.
+  EXPECT_EQ(Quality("part")["expected_feature_age_normalized 5"], "1.000000000");
   EXPECT_EQ(Refusal(arguments + " --from-stamp 7" + To("none")), 5);
 }
 
@@ -149,6 +151,28 @@ TEST_F(TrackEvaluationTest, TrajectoryAndTracksTogetherLeaveOneManifest) {
   EXPECT_NE(out.find("coverage"), std::string::npos);
   EXPECT_NE(out.find("judged"), std::string::npos);
   EXPECT_EQ(Refusal(arguments + To("both")), 8);  // results are not overwritten
+}
+
+TEST_F(TrackEvaluationTest, TracksThatCannotBeJudgedLeaveNothingBehind) {
+  const std::string arguments = SceneArguments(0.0);
+  WriteTum(folder / "estimate.txt", testing::TrackScene().Poses());
+  Write("tracks.txt", "1 0 5 5\n1 0.1 5 nan\n");
+  EXPECT_EQ(Refusal(arguments + " --align none --estimate " + Quote(folder / "estimate.txt") + To("both")), 4);
+  EXPECT_FALSE(fs::exists(folder / "both"));
+}
+
+TEST_F(TrackEvaluationTest, LifetimesOfAFewTracksAreThoseOfTheirOwnFrames) {
+  std::string frames;
+  std::string single;
+  for (int k = 0; k < 20; ++k) {
+    const std::string position = ' ' + std::to_string(0.3117 * k) + " 5 5\n";
+    single += '1' + position;
+    frames += '1' + position + '2' + position;
+  }
+  ASSERT_EQ(Run(TrueTrackArguments(frames, frames) + To("frames")), 0) << err;
+  EXPECT_NE(out.find("lifetime   20.0 +- 0.0 frames, 5.92 +- 0.00 s (2 tracks)\n"), std::string::npos) << out;
+  ASSERT_EQ(Run(TrueTrackArguments(single, single) + " --set odometry.max_gap_s=1" + To("single")), 0) << err;
+  EXPECT_NE(out.find("(1 tracks, in frames made every 0.025 s)\n"), std::string::npos) << out;
 }
 
 TEST_F(TrackEvaluationTest, SameBytesEachTime) {

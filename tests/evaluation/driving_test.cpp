@@ -117,6 +117,10 @@ TEST(PositionSearch, FindsWhatAWalkFinds) {
                           (stands ? Eigen::Vector3d::Zero() : Eigen::Vector3d(step(random), step(random), 0.1)));
     }
     const PositionSearch search(positions);
+    for (std::size_t i = 0; i < count; ++i) {  // the far position may be at the very distance
+      const double distance = (positions[i] - positions[0]).norm();
+      ASSERT_LE(search.FirstFar(0, positions[0], distance).value_or(count), i);
+    }
     for (std::size_t from = 0; from < count; ++from) {
       const Eigen::Vector3d center = positions[from] + Eigen::Vector3d(0.01, 0, 0);
       const auto far = [&](std::size_t i) { return (positions[i] - center).norm() >= 1.0; };

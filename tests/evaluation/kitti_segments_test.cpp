@@ -154,6 +154,7 @@ TEST(KittiSegments, FindTheEndsOfALinearSearch) {
 TEST(Lengths, AreMetresOrSharesOfThePath) {
   EXPECT_EQ(ParseLengths("100,50m,10%", 30.0), (std::vector{100.0, 50.0, 3.0}));
   EXPECT_EQ(ParseLengths("5,10%", 0.0), std::vector{5.0});
+  EXPECT_EQ(ParseLengths("5,5m,10%", 50.0), std::vector{5.0});  // else its segments would count several times
   for (const std::string bad : {"", "0", "-5", "10 m", "ten", "10,,20", "5km", "nan", "inf", "1e999", "10%%"}) {
     try {
       ParseLengths(bad, 30.0);

@@ -114,6 +114,7 @@ TEST_F(TrajectoryIoTest, RefusesFaultyTextAndNamesTheLine) {
   const std::string good = "# t px py pz qx qy qz qw\n1.0 0 0 0 0 0 0 1\n";
   ExpectMentions(RefusalOf(good + "2.0 0 0 0 0 0 0\n"), {"bad.txt:3: ", "qw"});
   ExpectMentions(RefusalOf(good + "2.0 0 0 nan 0 0 0 1\n"), {"bad.txt:3: ", "'nan'"});
+  ExpectMentions(RefusalOf(good + "2.0 0 0 -1e160 0 0 0 1\n"), {"bad.txt:3: ", "1e12 m"});
   ExpectMentions(RefusalOf(good + "2.0 0 0 0 0 0 0 x\n"), {"bad.txt:3: ", "'x'"});
   ExpectMentions(RefusalOf(good + "2.0 0 0 0 0 0 0 0.9\n"), {"bad.txt:3: ", "0.9"});
   ExpectMentions(RefusalOf(good + "2.0 0 0 0 0 0 0 0\n"), {"bad.txt:3: ", "norm"});
@@ -140,6 +141,7 @@ TEST_F(TrajectoryIoTest, RefusesFaultyKittiPosesAndNamesTheLine) {
   };
   ExpectMentions(refusal(good + "1 0 0 0 0 1 0 0 0 0 1\n"), {"bad.txt:2: ", "12 numbers", "found 11"});
   ExpectMentions(refusal(good + "1 0 0 nan 0 1 0 0 0 0 1 0\n"), {"bad.txt:2: ", "'nan'"});
+  ExpectMentions(refusal(good + "1 0 0 1e160 0 1 0 0 0 0 1 0\n"), {"bad.txt:2: ", "1e12 m"});
   ExpectMentions(refusal(good + "1 0 0 0 0 2 0 0 0 0 1 0\n"), {"bad.txt:2: ", "orthonormal"});
   ExpectMentions(refusal(good + "1 0 0 0 0 1 0 0 0 0 -1 0\n"), {"bad.txt:2: ", "orthonormal"});
   ExpectMentions(refusal("1.0 0 0 0 0 0 0 1\n"), {"a trajectory text", "12 numbers"});

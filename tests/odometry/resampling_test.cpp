@@ -78,6 +78,16 @@ TEST(Resampling, LeavesLongGapsOpen) {
   }
 }
 
+TEST(Resampling, PassesOverAGapOfManyYears) {
+  const TimeNs late = 1'000'000'000 * kNsPerSecond;
+  const TimeNs ms = 1'000'000;
+  const Tracks tracks{{1, 0, 5, 5}, {1, 50 * ms, 5, 5}, {1, late, 6, 5}, {1, late + 50 * ms, 6, 5}};
+  const Tracks resampled = Resample(tracks, {.frame_interval_s = 0.025});
+  ASSERT_EQ(resampled.size(), 6u);
+  EXPECT_EQ(resampled[2].t, 50 * ms);
+  EXPECT_EQ(resampled[3].t, late);
+}
+
 TEST(Resampling, FramesHoldUndistortedFeaturesWithTheLensJacobian) {
   const Camera camera = testing::DriveCamera();
   const Tracks tracks = {{3, 10, 300.0, 40.0}, {7, 10, 50.0, 200.0}, {7, 10, 50.0, 200.0}, {3, 20, 301.0, 41.0}};

@@ -40,9 +40,9 @@ MatchedPath MatchPath(std::span<const PosePair> pairs, const Similarity& similar
 /// Angle of a rotation, rad, in [0, pi].
 double Angle(const Eigen::Quaterniond& rotation);
 
-/// Reads a comma-separated list of lengths of path: "100", "100m" (both m) or "10%" (of `path_m`). Shares of
-/// a path without length are left out. Throws Error (kConfiguration) for anything else, for lengths that are not
-/// positive and for an empty list.
+/// Reads a comma-separated list of lengths of path: "100", "100m" (both m) or "10%" (of `path_m`), each taken once.
+/// Shares of a path without length are left out. Throws Error (kConfiguration) for anything else, for lengths that are
+/// not positive and for an empty list.
 std::vector<double> ParseLengths(const std::string& text, double path_m);
 
 }  // namespace evo

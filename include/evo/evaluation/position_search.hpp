@@ -8,8 +8,8 @@
 
 namespace evo {
 
-/// Finds, among positions in order of time, the next one that is far away. Boxes around runs of positions let a long
-/// standstill be passed over in O(log n) where a walk would take O(n) from each of its poses.
+/// Finds, among positions in order of time, the next one that is far away. Boxes and spheres around runs of positions
+/// let a long stay in one place be passed over in O(log n) where a walk would take O(n) from each of its poses.
 class PositionSearch {
  public:
   /// At least one position.
@@ -23,11 +23,16 @@ class PositionSearch {
   const std::vector<Eigen::Vector3d>& positions() const { return positions_; }
 
  private:
+  struct Run {
+    Eigen::AlignedBox3d box;
+    double radius = 0.0;  // of a sphere around the middle of the box
+  };
+
   bool MayBeFar(std::size_t level, std::size_t node, const Eigen::Vector3d& center, double distance) const;
 
   std::vector<Eigen::Vector3d> positions_;
-  /// Level 0 boxes hold one position each, every further one two boxes of the level below.
-  std::vector<std::vector<Eigen::AlignedBox3d>> levels_;
+  /// Runs of level 0 hold one position each, those of every further one two runs of the level below.
+  std::vector<std::vector<Run>> levels_;
 };
 
 }  // namespace evo

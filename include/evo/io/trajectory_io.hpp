@@ -13,8 +13,8 @@ enum class GroundTruthSource {
 };
 
 /// Reads lines `t px py pz qx qy qz qw` (TUM, also UZH's groundtruth.txt): T_world_cam, seconds, metres, Hamilton
-/// quaternion of norm 1 within 1e-3. Lines starting with `#` are comments.
-/// Throws Error (kInput) with file and line; stamps must strictly increase and there must be a pose.
+/// quaternion of norm 1 within 1e-3; no farther than 1e12 m from the origin, here and below. Lines starting with `#`
+/// are comments. Throws Error (kInput) with file and line; stamps must strictly increase and there must be a pose.
 Trajectory ReadTum(const std::filesystem::path& path);
 
 /// Reads a KITTI pose file: rows of 12 numbers, the first three rows of T_world_cam, row by row, in metres. There are

@@ -16,8 +16,9 @@ struct ResamplingOptions {
 };
 void Register(Parameters& parameters, ResamplingOptions& options);
 
-/// Whether the tracks come in frames: most sightings share their stamp with several others.
-bool AreSynchronous(const Tracks& tracks);
+/// Whether the tracks come in frames: most sightings are at stamps that have `least` or more. Fewer than the usual
+/// eight are no frame that a pose could be estimated from. `tracks` in order of time.
+bool AreSynchronous(const Tracks& tracks, int least = 8);
 
 /// Asynchronous tracks at common stamps, `frame_interval_s` apart from the first sighting on. A position is the value
 /// of the straight line fitted to the track's sightings near the stamp, or linear interpolation where there are too
