@@ -135,7 +135,10 @@ std::string EvaluateTrajectory(const EvaluateArguments& arguments, const std::ve
                        [&, &e = estimate, &t = truth] { return Evaluate(t, e, alignments, interval, options); });
   });
   const std::string sequence = arguments.sequence.empty() ? SequenceName(arguments.ground_truth) : arguments.sequence;
-  record->Time("write", [&] { WriteEvaluationResults(arguments.out, sequence, evaluation, !arguments.no_plots); });
+  record->Time("write", [&] {
+    if (arguments.common.force) RemoveEvaluationResults(arguments.out);
+    WriteEvaluationResults(arguments.out, sequence, evaluation, !arguments.no_plots);
+  });
 
   record->AddCount("estimated_poses", estimate.size());
   record->AddCount("true_poses", truth.size());
@@ -164,7 +167,7 @@ void RunEvaluate(const EvaluateArguments& arguments, const std::vector<std::stri
   if (with_trajectory) summary += EvaluateTrajectory(arguments, alignments, interval, config, &record);
   if (with_tracks) {
     summary += RunTrackEvaluation(arguments.tracks, {arguments.ground_truth, arguments.common.Source(), interval},
-                                  config, arguments.out, !arguments.no_plots, &record);
+                                  config, arguments.out, !arguments.no_plots, arguments.common.force, &record);
   }
   WriteManifest(std::filesystem::path(arguments.out) / "manifest.json", record.manifest);
   std::cout << summary;

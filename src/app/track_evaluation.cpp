@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "app/error_place.hpp"
+#include "app/output_folder.hpp"
 #include "app/recording.hpp"
 #include "evo/core/error.hpp"
 #include "evo/evaluation/track_accuracy.hpp"
@@ -99,8 +100,13 @@ std::vector<std::string> TrackEvaluationResultNames() {
   return {"track_quality.csv", "track_errors.csv", "lifetime.csv"};
 }
 
+void RemoveTrackEvaluationResults(const std::filesystem::path& folder) {
+  RemoveResults(folder, R"(manifest\.json|track_quality\.csv|track_errors\.csv|lifetime\.csv)");
+  RemovePlots(folder, "track_error|lifetime");
+}
+
 std::string RunTrackEvaluation(const TrackEvaluationArguments& arguments, const TruePoses& poses, const Config& config,
-                               const std::filesystem::path& out, bool with_plots, RunRecord* record) {
+                               const std::filesystem::path& out, bool with_plots, bool force, RunRecord* record) {
   record->AddInput("tracks", arguments.tracks);
   if (!arguments.true_tracks.empty()) record->AddInput("true_tracks", arguments.true_tracks);
   if (!arguments.calibration.empty()) record->AddInput("calibration", arguments.calibration);
@@ -116,6 +122,7 @@ std::string RunTrackEvaluation(const TrackEvaluationArguments& arguments, const 
   });
   const auto lifetimes = FindLifetimes(tracks, config.odometry.resampling);
   record->Time("write_tracks", [&] {
+    if (force) RemoveTrackEvaluationResults(out);
     WriteTrackQuality(out / "track_quality.csv", accuracy);
     WriteTrackErrors(out / "track_errors.csv", accuracy);
     WriteLifetimes(out / "lifetime.csv", lifetimes);

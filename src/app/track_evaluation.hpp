@@ -35,9 +35,13 @@ struct TruePoses {
 /// track_quality.csv, track_errors.csv and lifetime.csv.
 std::vector<std::string> TrackEvaluationResultNames();
 
+/// Removes those files and the plots from `folder`, and manifest.json, which tells of them.
+void RemoveTrackEvaluationResults(const std::filesystem::path& folder);
+
 /// Judges the tracks, writes those files and plots/track_error and plots/lifetime, and returns the summary for people.
+/// With `force`, earlier ones are removed first.
 /// The lifetimes of asynchronous tracks are those of the frames that the odometry makes of them. Throws Error.
 std::string RunTrackEvaluation(const TrackEvaluationArguments& arguments, const TruePoses& poses, const Config& config,
-                               const std::filesystem::path& out, bool with_plots, RunRecord* record);
+                               const std::filesystem::path& out, bool with_plots, bool force, RunRecord* record);
 
 }  // namespace evo::app
