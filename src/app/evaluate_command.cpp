@@ -164,6 +164,8 @@ void WriteResults(const EvaluateArguments& arguments, const std::optional<Evalua
                   const std::optional<TrackEvaluation>& tracks) {
   const bool with_plots = !arguments.no_plots;
   const std::string sequence = arguments.sequence.empty() ? SequenceName(arguments.ground_truth) : arguments.sequence;
+  if (trajectory && arguments.common.force) RemoveEvaluationResults(arguments.out);
+  if (tracks && arguments.common.force) RemoveTrackEvaluationResults(arguments.out);
   if (trajectory) WriteEvaluationResults(arguments.out, sequence, *trajectory, with_plots);
   if (tracks) WriteTrackEvaluation(arguments.out, *tracks, with_plots);
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "app/output_folder.hpp"
 #include "evo/report/figures.hpp"
 #include "evo/report/gnuplot.hpp"
 #include "evo/report/latex_tables.hpp"
@@ -56,6 +57,13 @@ std::vector<std::string> EvaluationResultNames(std::span<const Alignment> alignm
   std::vector<std::string> names{"summary.csv", "summary.json", "metrics.csv", "tables/errors.tex"};
   for (std::size_t i = 0; i < alignments.size(); ++i) names.push_back("errors" + Suffix(i, alignments[i]) + ".csv");
   return names;
+}
+
+void RemoveEvaluationResults(const std::filesystem::path& folder) {
+  const std::string suffix = R"((_(none|origin|origin-scale|scale|posyaw|se3|sim3|first)(-[0-9.]+s?)?)?)";
+  RemoveResults(folder, R"(manifest\.json|summary\.(csv|json)|metrics\.csv|errors)" + suffix + R"(\.csv)");
+  RemoveResults(folder / "tables", R"(errors\.tex)");
+  RemovePlots(folder, "(trajectory|axes|errors|errors_distance|scale_drift)" + suffix);
 }
 
 void WriteEvaluationResults(const std::filesystem::path& folder, const std::string& sequence,

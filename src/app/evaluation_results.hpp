@@ -16,6 +16,10 @@ namespace evo::app {
 /// further one ("first:5" becomes first-5).
 std::vector<std::string> EvaluationResultNames(std::span<const Alignment> alignments);
 
+/// Removes those files, whatever the alignments were, and the plots from `folder`, and manifest.json, which tells of
+/// them.
+void RemoveEvaluationResults(const std::filesystem::path& folder);
+
 /// Stamps, as written in the estimate, at which the odometry started anew; empty if that is not known.
 using Restarts = std::optional<std::vector<TimeNs>>;
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <regex>
 
+#include "app/output_folder.hpp"
 #include "evo/report/png.hpp"
 
 namespace evo::app {
@@ -62,14 +62,6 @@ void EventDrawing::WriteSheet() {
   stamps_.clear();
 }
 
-void RemoveDrawings(const fs::path& folder) {
-  static const std::regex kDrawing(R"((four_frames|frame)_\d{4,}\.\d{3}s\.png)");
-  std::error_code ignored;
-  std::vector<fs::path> drawings;
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    if (std::regex_match(entry.path().filename().string(), kDrawing)) drawings.push_back(entry.path());
-  }
-  for (const auto& drawing : drawings) fs::remove(drawing, ignored);
-}
+void RemoveDrawings(const fs::path& folder) { RemoveResults(folder, R"((four_frames|frame)_\d{4,}\.\d{3}s\.png)"); }
 
 }  // namespace evo::app

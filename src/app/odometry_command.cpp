@@ -2,9 +2,6 @@
 #include <memory>
 
 #include "app/commands.hpp"
-#include "app/interrupt.hpp"
-#include "app/options.hpp"
-#include "app/output_folder.hpp"
 #include "app/stages.hpp"
 
 namespace evo::app {
@@ -20,21 +17,14 @@ struct OdometryArguments {
 };
 
 void RunOdometryCommand(const OdometryArguments& arguments, const std::vector<std::string>& command_line) {
-  Config config;
-  arguments.common.Apply(&config);
-  auto results = OdometryResultNames();
-  results.emplace_back("manifest.json");
-  CheckOutputFolder(arguments.stage.out, results, arguments.common.force);
-  RunRecord record(command_line, config.parameters);
+  StageContext context(arguments.common, arguments.stage, OdometryResultNames(), command_line);
   const Camera camera = OpenCamera(arguments.calibration, arguments.sensor);
-  const Tracks tracks = record.Time("read", [&] { return ReadTracks(arguments.tracks); });
-  record.AddInput("tracks", arguments.tracks);
-  record.AddInput("calibration", arguments.calibration);
-  const InterruptGuard guard(arguments.stage.out);
-  ThreadPool pool(arguments.common.threads);
-  const StageContext context{config, &pool, &record, arguments.stage, !arguments.common.quiet};
-  const OdometryResult result = RunOdometryStage(context, tracks, arguments.tracks, camera);
-  WriteManifest(context.options.out / "manifest.json", record.manifest);
+  const Tracks tracks = context.record.Time("read", [&] { return ReadTracks(arguments.tracks); });
+  context.record.AddInput("tracks", arguments.tracks);
+  context.record.AddInput("calibration", arguments.calibration);
+  if (context.force) RemoveOdometryResults(context.options.out);
+  const OdometryResult result = RunOdometryStage(&context, tracks, arguments.tracks, camera);
+  context.Finish();
   std::cout << FormatOdometry(result);
 }
 

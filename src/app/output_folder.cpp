@@ -2,6 +2,8 @@
 
 #include <unistd.h>
 
+#include <regex>
+
 #include "evo/core/error.hpp"
 
 namespace evo::app {
@@ -35,6 +37,27 @@ void CheckOutputFolder(const fs::path& folder, const std::vector<std::string>& r
                                           "); choose another --out folder or add --force to overwrite them");
     }
   }
+}
+
+void RemoveResults(const fs::path& folder, const std::string& pattern) {
+  const std::regex names(pattern);
+  std::vector<fs::path> found;
+  std::error_code failure;
+  for (const auto& entry : fs::directory_iterator(folder, failure)) {
+    if (entry.is_regular_file() && std::regex_match(entry.path().filename().string(), names)) {
+      found.push_back(entry.path());
+    }
+  }
+  for (const auto& path : found) {
+    fs::remove(path, failure);
+    if (failure) {
+      throw Error(ErrorKind::kOutput, path.string() + ": cannot remove this earlier result: " + failure.message());
+    }
+  }
+}
+
+void RemovePlots(const fs::path& folder, const std::string& pattern) {
+  RemoveResults(folder / "plots", "(" + pattern + ")\\.(dat|gp|svg|pdf)");
 }
 
 }  // namespace evo::app

@@ -4,10 +4,6 @@
 #include "app/commands.hpp"
 #include "app/error_place.hpp"
 #include "app/evaluation_results.hpp"
-#include "app/event_drawing.hpp"
-#include "app/interrupt.hpp"
-#include "app/options.hpp"
-#include "app/output_folder.hpp"
 #include "app/stages.hpp"
 #include "evo/core/error.hpp"
 #include "evo/report/tables.hpp"
@@ -59,58 +55,57 @@ std::vector<std::string> ResultNames(const std::vector<Alignment>& alignments) {
   auto results = TrackingResultNames();
   for (const auto& name : OdometryResultNames()) results.push_back(name);
   for (const auto& name : EvaluationResultNames(alignments)) results.push_back(name);
-  results.emplace_back("manifest.json");
   return results;
 }
 
 /// `only_determined`: as far as the motion allows. Prints the summary.
-void RunEvaluationStage(const StageContext& context, const GroundTruth& truth, const Trajectory& estimate,
+void RunEvaluationStage(StageContext* context, const GroundTruth& truth, const Trajectory& estimate,
                         const std::vector<TimeNs>& frames, const std::vector<Alignment>& alignments,
                         bool only_determined) {
-  EvaluationOptions options = context.config.evaluation;
+  EvaluationOptions options = context->config.evaluation;
   options.leave_out_undetermined = only_determined;
   const TimeNs offset = FromSeconds(options.association.estimate_clock_offset_s);
   // The truth of the whole interval counts: an estimate that covers a part of it must not look complete.
   const EvaluationInterval interval{frames.front() + offset, frames.back() + offset};
-  NamingPlace((context.options.out / "trajectory.txt").string() + " against " + truth.path.string(), [&] {
-    const Evaluation evaluation = context.record->Time(
+  NamingPlace((context->options.out / "trajectory.txt").string() + " against " + truth.path.string(), [&] {
+    const Evaluation evaluation = context->record.Time(
         "evaluate", [&] { return Evaluate(truth.trajectory, estimate, alignments, interval, options); });
-    context.record->Time("write_evaluation", [&] {
-      WriteEvaluationResults(context.options.out, SequenceName(truth.path), evaluation, !context.options.no_plots,
-                             context.record->manifest.rebootstraps);
+    context->record.Time("write_evaluation", [&] {
+      WriteEvaluationResults(context->options.out, SequenceName(truth.path), evaluation, !context->options.no_plots,
+                             context->record.manifest.rebootstraps);
     });
     if (!evaluation.alignments.empty()) std::cout << FormatSummary(evaluation);
   });
 }
 
 void RunAll(const RunArguments& arguments, const std::vector<std::string>& command_line) {
-  Config config;
-  arguments.common.Apply(&config);
   const auto alignments = ParseAlignments(arguments.align.empty() ? kUsualAlignments : arguments.align);
-  CheckOutputFolder(arguments.stage.out, ResultNames(alignments), arguments.common.force);
-  RunRecord record(command_line, config.parameters);
+  StageContext context(arguments.common, arguments.stage, ResultNames(alignments), command_line);
+  const std::filesystem::path& out = context.options.out;
   // Every input is opened before any work, so that a wrong one is reported at once.
-  Recording recording = OpenRecording(arguments.recording, &record);
-  const auto truth = OpenGroundTruth(arguments, recording, &record);
+  Recording recording = OpenRecording(arguments.recording, &context.record);
+  const auto truth = OpenGroundTruth(arguments, recording, &context.record);
   if (truth) {
-    RequireOverlap(*truth, recording, FromSeconds(config.evaluation.association.estimate_clock_offset_s));
+    RequireOverlap(*truth, recording, FromSeconds(context.config.evaluation.association.estimate_clock_offset_s));
   }
-  if (arguments.common.force) RemoveDrawings(arguments.stage.out / "images");
-  const InterruptGuard guard(arguments.stage.out);
-  ThreadPool pool(arguments.common.threads);
-  const StageContext context{config, &pool, &record, arguments.stage, !arguments.common.quiet};
+  // At once, so that nothing of an earlier run is taken for this one's, which may fail or have no ground truth.
+  if (context.force) {
+    RemoveTrackingResults(out);
+    RemoveOdometryResults(out);
+    RemoveEvaluationResults(out);
+  }
 
-  const TrackingOutcome tracking = RunTrackingStage(context, &recording);
+  const TrackingOutcome tracking = RunTrackingStage(&context, &recording);
   std::cout << FormatTracking(tracking) << std::flush;
   const OdometryResult odometry =
-      RunOdometryStage(context, tracking.result.tracks, context.options.out / "tracks.txt", recording.camera);
-  std::cout << FormatOdometry(odometry) << FormatSpeed(record.manifest, pool.size()) << std::flush;
+      RunOdometryStage(&context, tracking.result.tracks, out / "tracks.txt", recording.camera);
+  std::cout << FormatOdometry(odometry) << FormatSpeed(context.record.manifest, context.pool.size()) << std::flush;
   if (truth) {
-    RunEvaluationStage(context, *truth, odometry.trajectory, tracking.result.frames, alignments,
+    RunEvaluationStage(&context, *truth, odometry.trajectory, tracking.result.frames, alignments,
                        arguments.align.empty());
   }
-  WriteManifest(context.options.out / "manifest.json", record.manifest);
-  std::cout << "results    " << context.options.out.string() << '\n';
+  context.Finish();
+  std::cout << "results    " << out.string() << '\n';
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "app/error_place.hpp"
 #include "app/evaluation_results.hpp"
 #include "app/event_drawing.hpp"
+#include "app/output_folder.hpp"
 #include "evo/core/error.hpp"
 #include "evo/core/progress.hpp"
 #include "evo/io/trajectory_io.hpp"
@@ -40,9 +41,8 @@ TimeNs EndOfInterval(const Recording& recording) {
 
 /// Four frames in the middle of the interval, or four every `draw_every_s` seconds from its start on.
 DrawingSchedule ScheduleDrawings(const StageContext& context, const Recording& recording) {
-  const TimeNs start = recording.reader->first_stamp();
-  if (context.options.draw_every_s > 0.0) return {start, FromSeconds(context.options.draw_every_s)};
-  const TimeNs from = start + recording.interval.from;
+  const TimeNs from = recording.reader->first_stamp() + recording.interval.from;
+  if (context.options.draw_every_s > 0.0) return {from, FromSeconds(context.options.draw_every_s)};
   return {from + (EndOfInterval(recording) - from) / 2 - 2 * FromSeconds(context.config.tracker.frame_interval_s),
           std::nullopt};
 }
@@ -62,6 +62,23 @@ void DrawTrackFigures(const std::filesystem::path& folder, const TrackingOutcome
 
 }  // namespace
 
+StageContext::StageContext(const CommonOptions& common, StageOptions stage_options, std::vector<std::string> results,
+                           const std::vector<std::string>& command_line)
+    : options(std::move(stage_options)),
+      force(common.force),
+      show_progress(!common.quiet),
+      record(command_line,
+             [&]() -> const Parameters& {
+               common.Apply(&config);
+               results.emplace_back("manifest.json");
+               CheckOutputFolder(options.out, results, force);
+               return config.parameters;
+             }()),
+      guard(options.out),
+      pool(common.threads) {}
+
+void StageContext::Finish() const { WriteManifest(options.out / "manifest.json", record.manifest); }
+
 void AddStageOptions(CLI::App& command, StageOptions& options) {
   command.add_option("--out", options.out, "folder for the results")->required()->type_name("DIR");
   command.add_flag("--no-plots", options.no_plots, "write tables only");
@@ -78,66 +95,77 @@ void AddDrawingOption(CLI::App& command, StageOptions& options) {
 
 std::vector<std::string> TrackingResultNames() { return {"tracks.txt", "lifetime.csv", "tables/lifetime.tex"}; }
 
-TrackingOutcome RunTrackingStage(const StageContext& context, Recording* recording) {
-  const bool draw = context.options.draw_every_s > 0.0 || !context.options.no_plots;
-  EventDrawing drawing(context.options.out / "images", recording->reader->first_stamp(),
-                       draw ? ScheduleDrawings(context, *recording) : DrawingSchedule());
+void RemoveTrackingResults(const std::filesystem::path& folder) {
+  RemoveResults(folder, R"(manifest\.json|tracks\.txt|lifetime\.csv)");
+  RemoveResults(folder / "tables", R"(lifetime\.tex)");
+  RemovePlots(folder, "lifetime|lifetime_seconds|live_features");
+  RemoveDrawings(folder / "images");
+}
+
+TrackingOutcome RunTrackingStage(StageContext* context, Recording* recording) {
+  const bool draw = context->options.draw_every_s > 0.0 || !context->options.no_plots;
+  EventDrawing drawing(context->options.out / "images", recording->reader->first_stamp(),
+                       draw ? ScheduleDrawings(*context, *recording) : DrawingSchedule());
   TrackingOutcome outcome;
-  outcome.result = context.record->Time("track", [&] {
-    Progress progress("tracking", context.show_progress);
+  outcome.result = context->record.Time("track", [&] {
+    Progress progress("tracking", context->show_progress);
     return NamingPlace(recording->events.string(), [&] {
       return TrackEvents(
-          recording->reader.get(), recording->camera.width(), recording->camera.height(), context.config.tracker,
-          context.pool, [&](double done) { progress.Update(done); },
+          recording->reader.get(), recording->camera.width(), recording->camera.height(), context->config.tracker,
+          &context->pool, [&](double done) { progress.Update(done); },
           draw ? [&](const TrackingView& view) { drawing.Observe(view); } : std::function<void(const TrackingView&)>{});
     });
   });
   RoundAsWritten(&outcome.result.tracks);  // the odometry from tracks.txt shall give the same trajectory
   outcome.lifetimes = ComputeLifetimes(outcome.result.tracks, outcome.result.frames);
-  context.record->Time("write_tracks", [&] {
-    WriteTracks(context.options.out / "tracks.txt", outcome.result.tracks,
+  context->record.Time("write_tracks", [&] {
+    WriteTracks(context->options.out / "tracks.txt", outcome.result.tracks,
                 {"pixels of the raw sensor, each at the very instant of its stamp"});
-    WriteLifetimes(context.options.out / "lifetime.csv", outcome.lifetimes);
-    WriteLatex(context.options.out / "tables" / "lifetime.tex",
+    WriteLifetimes(context->options.out / "lifetime.csv", outcome.lifetimes);
+    WriteLatex(context->options.out / "tables" / "lifetime.tex",
                LifetimeTable(SequenceName(recording->events), outcome.lifetimes));
-    if (!context.options.no_plots) DrawTrackFigures(context.options.out / "plots", outcome);
+    if (!context->options.no_plots) DrawTrackFigures(context->options.out / "plots", outcome);
   });
   const auto& frames = outcome.result.frames;
-  context.record->manifest.recorded_s = ToSeconds(frames.back() - frames.front());
-  context.record->AddCount("threads", static_cast<std::size_t>(context.pool->size()));
-  context.record->AddCount("events", outcome.result.events);
-  context.record->AddCount("event_frames", outcome.result.frames.size());
-  context.record->AddCount("event_key_frames", outcome.result.key_frames);
-  context.record->AddCount("tracks", CountIds(outcome.result.tracks));
-  context.record->AddCount("track_observations", outcome.result.tracks.size());
+  context->record.manifest.recorded_s = ToSeconds(frames.back() - frames.front());
+  context->record.AddCount("threads", static_cast<std::size_t>(context->pool.size()));
+  context->record.AddCount("events", outcome.result.events);
+  context->record.AddCount("event_frames", outcome.result.frames.size());
+  context->record.AddCount("event_key_frames", outcome.result.key_frames);
+  context->record.AddCount("tracks", CountIds(outcome.result.tracks));
+  context->record.AddCount("track_observations", outcome.result.tracks.size());
   return outcome;
 }
 
 std::vector<std::string> OdometryResultNames() { return {"trajectory.txt", "map.ply"}; }
 
-OdometryResult RunOdometryStage(const StageContext& context, const Tracks& tracks, const std::filesystem::path& source,
+void RemoveOdometryResults(const std::filesystem::path& folder) {
+  RemoveResults(folder, R"(manifest\.json|trajectory\.txt|map\.ply)");
+}
+
+OdometryResult RunOdometryStage(StageContext* context, const Tracks& tracks, const std::filesystem::path& source,
                                 const Camera& camera) {
-  OdometryResult result = context.record->Time("odometry", [&] {
-    Progress progress("odometry", context.show_progress);
+  OdometryResult result = context->record.Time("odometry", [&] {
+    Progress progress("odometry", context->show_progress);
     return NamingPlace(source.string(), [&] {
-      return RunOdometry(tracks, camera, context.config.odometry, context.pool->size(),
+      return RunOdometry(tracks, camera, context->config.odometry, context->pool.size(),
                          [&](double done) { progress.Update(done); });
     });
   });
   for (const TimeNs t : result.lost) spdlog::debug("no pose at {} s", FormatTime(t));
   for (std::size_t i = 1; i < result.bootstraps.size(); ++i) {
     spdlog::warn("tracking was lost; started anew at {} s", FormatTime(result.bootstraps[i]));
-    context.record->manifest.rebootstraps.push_back(result.bootstraps[i]);
+    context->record.manifest.rebootstraps.push_back(result.bootstraps[i]);
   }
-  context.record->Time("write_trajectory", [&] {
-    WriteTum(context.options.out / "trajectory.txt", result.trajectory);
-    WriteMap(result.points, context.options.out / "map.ply");
+  context->record.Time("write_trajectory", [&] {
+    WriteTum(context->options.out / "trajectory.txt", result.trajectory);
+    WriteMap(result.points, context->options.out / "map.ply");
   });
-  context.record->AddCount("frames", static_cast<std::size_t>(result.frames));
-  context.record->AddCount("key_frames", static_cast<std::size_t>(result.key_frames));
-  context.record->AddCount("poses", result.trajectory.size());
-  context.record->AddCount("frames_lost", result.lost.size());
-  context.record->AddCount("map_points", result.points.size());
+  context->record.AddCount("frames", static_cast<std::size_t>(result.frames));
+  context->record.AddCount("key_frames", static_cast<std::size_t>(result.key_frames));
+  context->record.AddCount("poses", result.trajectory.size());
+  context->record.AddCount("frames_lost", result.lost.size());
+  context->record.AddCount("map_points", result.points.size());
   return result;
 }
 

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "app/config.hpp"
+#include "app/interrupt.hpp"
+#include "app/options.hpp"
 #include "app/recording.hpp"
 #include "app/run_record.hpp"
 #include "evo/core/parallel.hpp"
@@ -28,11 +30,20 @@ void AddDrawingOption(CLI::App& command, StageOptions& options);
 
 /// What all stages of one command share.
 struct StageContext {
-  const Config& config;
-  ThreadPool* pool;
-  RunRecord* record;
+  /// Reads the configuration and makes sure that `results` (names in options.out) and manifest.json can be written; see
+  /// CheckOutputFolder. Throws Error.
+  StageContext(const CommonOptions& common, StageOptions stage_options, std::vector<std::string> results,
+               const std::vector<std::string>& command_line);
+  /// manifest.json, the last file that a command writes. Throws Error (kOutput).
+  void Finish() const;
+
+  Config config;
   StageOptions options;
-  bool show_progress = true;
+  bool force;
+  bool show_progress;
+  RunRecord record;
+  InterruptGuard guard;
+  ThreadPool pool;
 };
 
 struct TrackingOutcome {
@@ -42,14 +53,17 @@ struct TrackingOutcome {
 
 /// Files that the tracking stage leaves in the output folder.
 std::vector<std::string> TrackingResultNames();
+/// Removes those files, the plots and the drawings from `folder`, and manifest.json, which tells of them.
+void RemoveTrackingResults(const std::filesystem::path& folder);
 /// Tracks the recording and writes tracks.txt, lifetime.csv, tables/lifetime.tex, the plots lifetime, lifetime_seconds
 /// and live_features and, in images/, what EventDrawing draws. Throws Error.
-TrackingOutcome RunTrackingStage(const StageContext& context, Recording* recording);
+TrackingOutcome RunTrackingStage(StageContext* context, Recording* recording);
 
 std::vector<std::string> OdometryResultNames();
+void RemoveOdometryResults(const std::filesystem::path& folder);
 /// Runs the odometry and writes trajectory.txt and map.ply. `source` is the file of the tracks, for messages. Throws
 /// Error.
-OdometryResult RunOdometryStage(const StageContext& context, const Tracks& tracks, const std::filesystem::path& source,
+OdometryResult RunOdometryStage(StageContext* context, const Tracks& tracks, const std::filesystem::path& source,
                                 const Camera& camera);
 
 /// The stages' summaries for people: aligned lines that end with a newline.

@@ -2,10 +2,6 @@
 #include <memory>
 
 #include "app/commands.hpp"
-#include "app/event_drawing.hpp"
-#include "app/interrupt.hpp"
-#include "app/options.hpp"
-#include "app/output_folder.hpp"
 #include "app/stages.hpp"
 
 namespace evo::app {
@@ -19,20 +15,12 @@ struct TrackArguments {
 };
 
 void RunTrack(const TrackArguments& arguments, const std::vector<std::string>& command_line) {
-  Config config;
-  arguments.common.Apply(&config);
-  auto results = TrackingResultNames();
-  results.emplace_back("manifest.json");
-  CheckOutputFolder(arguments.stage.out, results, arguments.common.force);
-  RunRecord record(command_line, config.parameters);
-  Recording recording = OpenRecording(arguments.recording, &record);
-  if (arguments.common.force) RemoveDrawings(arguments.stage.out / "images");
-  const InterruptGuard guard(arguments.stage.out);
-  ThreadPool pool(arguments.common.threads);
-  const StageContext context{config, &pool, &record, arguments.stage, !arguments.common.quiet};
-  const TrackingOutcome outcome = RunTrackingStage(context, &recording);
-  WriteManifest(context.options.out / "manifest.json", record.manifest);
-  std::cout << FormatTracking(outcome) << FormatSpeed(record.manifest, pool.size());
+  StageContext context(arguments.common, arguments.stage, TrackingResultNames(), command_line);
+  Recording recording = OpenRecording(arguments.recording, &context.record);
+  if (context.force) RemoveTrackingResults(context.options.out);
+  const TrackingOutcome outcome = RunTrackingStage(&context, &recording);
+  context.Finish();
+  std::cout << FormatTracking(outcome) << FormatSpeed(context.record.manifest, context.pool.size());
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "app/error_place.hpp"
+#include "app/output_folder.hpp"
 #include "app/recording.hpp"
 #include "evo/core/error.hpp"
 #include "evo/odometry/resampling.hpp"
@@ -97,6 +98,11 @@ void AddTrackEvaluationOptions(CLI::App& command, TrackEvaluationArguments& argu
 
 std::vector<std::string> TrackEvaluationResultNames() {
   return {"track_quality.csv", "track_errors.csv", "lifetime.csv"};
+}
+
+void RemoveTrackEvaluationResults(const std::filesystem::path& folder) {
+  RemoveResults(folder, R"(manifest\.json|track_quality\.csv|track_errors\.csv|lifetime\.csv)");
+  RemovePlots(folder, "track_error|lifetime");
 }
 
 TrackEvaluation EvaluateTracks(const TrackEvaluationArguments& arguments, const TruePoses& poses, const Config& config,

@@ -8,6 +8,7 @@
 
 #include "evo/core/error.hpp"
 #include "evo/io/calibration_io.hpp"
+#include "evo/io/depth_maps.hpp"
 #include "evo/io/event_reader.hpp"
 #include "evo/io/file_kind.hpp"
 #include "evo/io/sequence.hpp"
@@ -130,6 +131,12 @@ Description DescribeHdf5(const std::filesystem::path& path) {
   }
   if (file.Has("davis/left/pose")) {
     AddTrajectory(&description, "pose (cartographer) ", ReadGroundTruth(path, GroundTruthSource::kCartographer));
+  }
+  if (HasDepthMaps(path)) {
+    const DepthMapReader maps(path);
+    const std::string size = std::to_string(maps.width()) + " x " + std::to_string(maps.height()) + " px";
+    description.values.emplace_back("depth maps", std::to_string(maps.stamps().size()) + " of " + size);
+    AddSpan(&description, "depth maps ", maps.stamps().size(), maps.stamps().front(), maps.stamps().back(), "maps/s");
   }
   if (description.values.empty()) file.Open(kMvsecEvents);  // says what the file holds instead
   return description;

@@ -57,8 +57,10 @@ Figure ErrorFigure(const std::string& name, const Evaluation& evaluation, const 
   planar.Pad();
   vertical.Pad();
 
-  const std::string curve = "data" + Every(result.errors.size()) + " using " + (over_time ? "1" : "2");
-  const std::string with = " with " + Curve(result.errors.size());
+  const auto curve = [&](const std::string& column, const std::string& style, const std::string& title) {
+    return Curve{"data", result.errors.size(), (over_time ? "1:" : "2:") + column, style, title};
+  };
+  const auto color = [](const char* hex) { return std::string("linecolor '") + hex + "'"; };
   std::ostringstream script;
   script << BeginPanels() << "set rmargin at screen 0.88\n"
          << "set xrange " << along << "\n"
@@ -71,15 +73,14 @@ Figure ErrorFigure(const std::string& name, const Evaluation& evaluation, const 
   }
   script << "data = '" << name << ".dat'\n"
          << Panel(0.115, 0.63, planar, "error of position (m)", false) << PercentAxis(evaluation, planar) << "plot "
-         << curve << ":5" << with << " linewidth 3 linecolor '#000000' title 'planar', \\\n"
-         << "  " << curve << ":3" << with << " linewidth 2 linecolor '" << kBlue
-         << "' title 'longitudinal (+ ahead)', \\\n"
-         << "  " << curve << ":4" << with << " linewidth 2 dashtype (8,4) linecolor '" << kVermilion
-         << "' title 'lateral (+ left)'" << ExplainInterruptions(interruptions) << "\n"
+         << curve("5", "linewidth 3 linecolor '#000000'", "planar") << ", \\\n  "
+         << curve("3", "linewidth 2 " + color(kBlue), "longitudinal (+ ahead)") << ", \\\n  "
+         << curve("4", "linewidth 2 dashtype (8,4) " + color(kVermilion), "lateral (+ left)")
+         << ExplainInterruptions(interruptions) << "\n"
          << "unset label 2\n"
          << Panel(0.67, 0.88, vertical, "vertical (m)", true) << PercentAxis(evaluation, vertical) << "set xlabel '"
          << (over_time ? TimeLabel(evaluation) : "distance travelled (m)") << "'\n"
-         << "plot " << curve << ":6" << with << " linewidth 2 linecolor '" << kPurple << "' notitle\n"
+         << "plot " << curve("6", "linewidth 2 " + color(kPurple), "") << "\n"
          << "unset multiplot\n";
   return {ErrorData(evaluation, result), script.str(), 900, 620};
 }
@@ -106,8 +107,9 @@ Figure ScaleDriftFigure(const std::string& name, const Evaluation& evaluation, c
          << "set xlabel '" << TimeLabel(evaluation) << "'\n"
          << "set ylabel 'true size / estimated size'\n"
          << DrawInterruptions(interruptions) << "plot 1 with lines linewidth 1 linecolor '#808080' notitle, \\\n"
-         << "  '" << name << ".dat'" << Every(samples.size()) << " using 1:3 with " << Curve(samples.size())
-         << " linewidth 2 linecolor '" << kBlue << "' title 'local scale (" << result.alignment.name << ")'"
+         << "  "
+         << Curve{"'" + name + ".dat'", samples.size(), "1:3", std::string("linewidth 2 linecolor '") + kBlue + "'",
+                  "local scale (" + result.alignment.name + ")"}
          << ExplainInterruptions(interruptions) << "\n";
   return {data.str(), script.str()};
 }

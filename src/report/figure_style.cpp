@@ -10,7 +10,6 @@ namespace evo {
 namespace {
 
 constexpr std::size_t kMostPoints = 5000;
-constexpr std::size_t kFewPoints = 40;
 
 constexpr const char* kGapColor = "#e6e6e6";
 constexpr const char* kRestartStyle = "linewidth 2 dashtype (2,4) linecolor '#707070'";
@@ -34,11 +33,14 @@ void AppendRow(std::ostream& data, std::initializer_list<double> values) {
   data << '\n';
 }
 
-std::string Every(std::size_t rows) {
-  return rows <= kMostPoints ? "" : " every " + std::to_string((rows + kMostPoints - 1) / kMostPoints);
+std::ostream& operator<<(std::ostream& out, const Curve& curve) {
+  out << curve.data;
+  if (curve.rows > kMostPoints) out << " every " << (curve.rows + kMostPoints - 1) / kMostPoints;
+  return out << " using " << curve.columns << " with lines " << curve.style
+             << (curve.title.empty() ? " notitle" : " title '" + curve.title + "'") << ", \\\n  " << curve.data
+             << " every ::0::0 using " << curve.columns << " with points pointtype 7 pointsize 0.45 " << curve.style
+             << " notitle";
 }
-
-std::string Curve(std::size_t rows) { return rows < kFewPoints ? "linespoints pointtype 7 pointsize 0.5" : "lines"; }
 
 void Range::Add(double value) {
   low = std::min(low, value);

@@ -19,8 +19,8 @@ inline constexpr const char* kVermilion = "#D55E00";
 inline constexpr const char* kSkyBlue = "#56B4E9";
 inline constexpr const char* kPurple = "#CC79A7";
 // The truth lies wide and light under the thin dark estimate: told apart in grey as well.
-inline constexpr const char* kTruthStyle = " linewidth 7 linecolor '#7DB7E8'";
-inline constexpr const char* kEstimateStyle = " linewidth 2 linecolor '#00664A'";
+inline constexpr const char* kTruthStyle = "linewidth 7 linecolor '#7DB7E8'";
+inline constexpr const char* kEstimateStyle = "linewidth 2 linecolor '#00664A'";
 
 inline constexpr const char* kStyle =
     "set border 3 linecolor '#404040'\n"
@@ -34,11 +34,17 @@ std::string Number(double value);
 std::string Print(const char* format, double value);
 /// A row of a data file.
 void AppendRow(std::ostream& data, std::initializer_list<double> values);
-/// " every N" that leaves a few thousand of `rows` points to be drawn, or nothing; the data file keeps them all.
-std::string Every(std::size_t rows);
 
-/// How to draw a curve: lines, and points too if they are so few that one may stand alone.
-std::string Curve(std::size_t rows);
+/// A curve that is broken at empty lines of the data: elements of a `plot` command. Of many rows only a few thousand
+/// are drawn; the data file keeps them all. Each stretch begins with a dot: a row between two gaps is no line.
+struct Curve {
+  std::string data;  ///< the file, and its index if there are several
+  std::size_t rows;
+  std::string columns;  ///< of `using`
+  std::string style;    ///< of line and dots: width, colour, dashes
+  std::string title;    ///< in the legend; empty: none
+};
+std::ostream& operator<<(std::ostream& out, const Curve& curve);
 
 /// An interval of an axis.
 struct Range {

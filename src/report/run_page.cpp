@@ -2,31 +2,20 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstdio>
 #include <sstream>
 
 #include "evo/report/run_table.hpp"
 #include "report/html.hpp"
 #include "report/page_resources.hpp"
 #include "report/run_measures.hpp"
-#include "report/text_file.hpp"
+#include "report/run_pictures.hpp"
 
 namespace evo {
 
 namespace {
 
-namespace fs = std::filesystem;
-
-constexpr std::uintmax_t kLargestPicture = 2'000'000;  // bytes
-
 std::string Plural(std::size_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
-}
-
-std::string Megabytes(std::uintmax_t bytes) {
-  char buffer[64];
-  std::snprintf(buffer, sizeof buffer, "%.1f MB", 1e-6 * static_cast<double>(bytes));
-  return buffer;
 }
 
 /// "" where the table has no such column.
@@ -35,10 +24,10 @@ std::string Cell(const CsvTable& table, std::size_t row, const std::string& colu
   return found ? table.rows[row][*found] : "";
 }
 
-/// A link to the details of a run.
+/// A link to the details of the run of that name.
 std::string RunLink(const std::vector<RunFolder>& runs, const std::string& name) {
   const auto run = std::ranges::find(runs, name, &RunFolder::name);
-  return "<a href=\"#run-" + std::to_string(run - runs.begin() + 1) + "\">" + HtmlEscape(name) + "</a>";
+  return RunLink(*run, static_cast<std::size_t>(run - runs.begin()) + 1);
 }
 
 /// Opens a table in a container of its own that scrolls, reachable by keyboard.
@@ -134,24 +123,6 @@ std::string ParameterTable(const std::vector<RunFolder>& runs) {
   return out.str();
 }
 
-std::string Picture(const fs::path& path, const std::string& type) {
-  const std::string name = HtmlEscape(path.filename().string());
-  const std::uintmax_t bytes = fs::file_size(path);
-  if (bytes > kLargestPicture) {
-    return "<figure><figcaption>" + name + " (" + Megabytes(bytes) +
-           ") is too large for this page.</figcaption></figure>\n";
-  }
-  return "<figure><img alt=\"" + name + "\" src=\"" + DataUri(type, ReadTextFile(path)) + "\"><figcaption>" + name +
-         "</figcaption></figure>\n";
-}
-
-std::string Pictures(const RunFolder& run) {
-  std::string pictures;
-  for (const auto& plot : run.plots) pictures += Picture(plot, "image/svg+xml");
-  for (const auto& sheet : run.sheets) pictures += Picture(sheet, "image/png");
-  return pictures.empty() ? "" : "<div class=\"plots\">\n" + pictures + "</div>\n";
-}
-
 /// A word of a command line as a shell takes it.
 std::string ShellWord(const std::string& word) {
   const bool plain = !word.empty() && std::ranges::all_of(word, [](unsigned char c) {
@@ -196,7 +167,7 @@ std::string RunDetails(const RunFolder& run, std::size_t number, const std::stri
   out << "<details class=\"run\" id=\"run-" << number << "\">\n<summary>" << HtmlEscape(run.name)
       << (run.failure.empty() ? "" : " <span class=\"failed\">failed</span>") << "</summary>\n<div>\n";
   if (!run.failure.empty()) out << "<p class=\"failed\">" << HtmlEscape(run.failure) << "</p>\n";
-  out << Pictures(run);
+  out << Pictures(run, number);
   if (!parameters.empty()) {
     out << "<h3>Parameters that differ between the runs</h3>\n<pre>" << HtmlEscape(parameters) << "</pre>\n";
   }
@@ -225,7 +196,7 @@ std::string RunsPage(const std::string& title, const std::vector<RunFolder>& run
        << FailureList(runs) << "<h2>Results</h2>\n"
        << "<p class=\"note\">Errors are means of absolute values after the alignment, in m and in % of the path; "
           "&ldquo;largest&rdquo; is the maximum. Lifetime is the mean over the tracks.</p>\n"
-       << ShortTable(runs, table) << WholeTable(runs, table) << "<h2>Configuration</h2>\n"
+       << ShortTable(runs, table) << WholeTable(runs, table) << Thumbnails(runs) << "<h2>Configuration</h2>\n"
        << ParameterTable(runs) << "<h2>Runs</h2>\n";
   for (std::size_t i = 0; i < runs.size(); ++i) {
     body << RunDetails(runs[i], i + 1, Parameters(table, runs[i].name));

@@ -1,31 +1,10 @@
 #include <algorithm>
-#include <cstdio>
 #include <sstream>
 
 #include "evo/report/track_report.hpp"
+#include "report/figure_style.hpp"
 
 namespace evo {
-
-namespace {
-
-// Okabe & Ito.
-constexpr const char* kBlue = "#0072B2";
-constexpr const char* kSkyBlue = "#56B4E9";
-constexpr const char* kVermilion = "#D55E00";
-
-constexpr const char* kStyle =
-    "set border 11 linecolor '#404040'\n"
-    "set tics out nomirror textcolor '#202020'\n"
-    "set grid linecolor '#d8d8d8' linetype 1 linewidth 0.5\n"
-    "set key outside top center horizontal maxrows 1 samplen 2.5\n";
-
-std::string Number(double value) {
-  char text[400];
-  std::snprintf(text, sizeof text, "%.6f", value);
-  return text;
-}
-
-}  // namespace
 
 Figure TrackErrorFigure(const std::string& name, const TrackAccuracy& accuracy) {
   std::ostringstream data;
@@ -34,8 +13,8 @@ Figure TrackErrorFigure(const std::string& name, const TrackAccuracy& accuracy) 
   double highest = 1e-3;
   std::int64_t most = 1;
   for (const auto& bin : accuracy.error_over_age) {
-    data << Number(0.5 * (bin.low_s + bin.high_s)) << ' ' << Number(bin.p25_px) << ' ' << Number(bin.median_px) << ' '
-         << Number(bin.p75_px) << ' ' << bin.tracks << '\n';
+    AppendRow(data,
+              {0.5 * (bin.low_s + bin.high_s), bin.p25_px, bin.median_px, bin.p75_px, static_cast<double>(bin.tracks)});
     end = std::max(end, bin.high_s);
     highest = std::max(highest, bin.p75_px);
     most = std::max(most, bin.tracks);
@@ -43,7 +22,8 @@ Figure TrackErrorFigure(const std::string& name, const TrackAccuracy& accuracy) 
   if (accuracy.error_over_age.empty()) data << "0 0 0 0 0\n";  // gnuplot refuses a file without data
 
   std::ostringstream script;
-  script << kStyle << "set xrange [0:" << Number(end) << "]\n"
+  script << kStyle << "set border 11 linecolor '#404040'\n"
+         << "set xrange [0:" << Number(end) << "]\n"
          << "set xlabel 'age of the track (s)'\n"
          << "set yrange [0:" << Number(1.1 * highest) << "]\n"
          << "set ylabel '"

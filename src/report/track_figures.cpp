@@ -84,8 +84,10 @@ Figure LiveFeaturesFigure(const std::string& name, const Tracks& tracks, std::sp
          << "set xlabel 'time (s)'\n"
          << "set ylabel 'live features'\n"
          << "plot " << Number(mean) << " with " << kMeanStyle << " '" << kVermilion << "' title 'mean "
-         << Print("%.1f", mean) << "', \\\n  '" << name << ".dat'" << Every(live.size()) << " using 1:2 with "
-         << Curve(live.size()) << " linewidth 2 linecolor '" << kBlue << "' title 'features seen in the event frame'\n";
+         << Print("%.1f", mean) << "', \\\n  "
+         << Curve{"'" + name + ".dat'", live.size(), "1:2", std::string("linewidth 2 linecolor '") + kBlue + "'",
+                  "features seen in the event frame"}
+         << "\n";
   return {data.str(), script.str()};
 }
 

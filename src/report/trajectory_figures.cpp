@@ -51,13 +51,16 @@ Range AxisRange(const Evaluation& evaluation, const AlignedEvaluation& result, i
   return range;
 }
 
-/// Elements of `plot` for truth and estimate, by their columns in the data file.
+/// `plot` of truth and estimate, by their columns in the data file.
 std::string PlotTracks(const Evaluation& evaluation, const AlignedEvaluation& result, const std::string& columns,
                        bool with_titles) {
-  const auto title = [&](const std::string& text) { return with_titles ? " title '" + text + "'" : " notitle"; };
-  return "plot data index 0" + Every(evaluation.truth.size()) + " using " + columns + " with lines" + kTruthStyle +
-         title("ground truth") + ", \\\n  data index 1" + Every(result.aligned.size()) + " using " + columns +
-         " with " + Curve(result.aligned.size()) + kEstimateStyle + title("estimate (" + result.alignment.name + ")");
+  const auto title = [&](const std::string& text) { return with_titles ? text : std::string(); };
+  std::ostringstream plot;
+  plot << "plot " << Curve{"data index 0", evaluation.truth.size(), columns, kTruthStyle, title("ground truth")}
+       << ", \\\n  "
+       << Curve{"data index 1", result.aligned.size(), columns, kEstimateStyle,
+                title("estimate (" + result.alignment.name + ")")};
+  return plot.str();
 }
 
 }  // namespace

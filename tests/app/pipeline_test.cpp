@@ -136,6 +136,58 @@ TEST_F(PipelineTest, FourFramesInTheMiddleAreDrawnUnlessThereShallBeNoPlots) {
   EXPECT_EQ(FileNames(images), std::vector<std::string>{"frame_of_mine.png"});
 }
 
+TEST_F(PipelineTest, DrawingsFollowEachOtherFromTheStartOfTheInterval) {
+  ASSERT_EQ(Run("track -q --no-plots --draw-every 0.2 --from 0.6 --to 1 --events " + Quote(Sample()) + To("result")),
+            0);
+  std::vector<std::string> sheets = FileNames(folder / "result" / "images");
+  std::erase_if(sheets, [](const std::string& name) { return name.starts_with("frame_"); });
+  EXPECT_EQ(sheets, (std::vector<std::string>{"four_frames_0000.620s.png", "four_frames_0000.800s.png"}));
+}
+
+TEST_F(PipelineTest, AForcedRunLeavesNothingOfTheOneBefore) {
+  const std::string words = "run -q --to 0.5 --force " + To("result") + " ";
+  ASSERT_EQ(Run(words + "--events " + Quote(Sample()) + " --align origin,sim3,se3:10"), 0) << err;
+  const fs::path result = folder / "result";
+  for (const char* name : {"errors_se3-10.csv", "plots/errors_distance_sim3.gp", "images/frame_0000.220s.png"}) {
+    EXPECT_TRUE(fs::exists(result / name)) << name;
+  }
+  for (const char* name : {"errors_mine.csv", "errors_sim3.txt", "plots/errors_mine.svg", "tables/mine.tex"}) {
+    Write("result/" + std::string(name), "mine");
+  }
+  const auto now = CountFiles(result);
+  EXPECT_EQ(Run(words + Blind() + "--ground-truth " + Quote(Sample("street_data.hdf5"))), 4);
+  EXPECT_EQ(CountFiles(result), now) << "a wrong input is noticed before anything is removed";
+
+  // Without ground truth there is no error that could be taken for the new trajectory's.
+  ASSERT_EQ(Run(words + Blind()), 0) << err;
+  EXPECT_EQ(FileNames(result),
+            (std::vector<std::string>{"errors_mine.csv", "errors_sim3.txt", "images", "lifetime.csv", "manifest.json",
+                                      "map.ply", "plots", "tables", "tracks.txt", "trajectory.txt"}));
+  EXPECT_EQ(FileNames(result / "plots"), std::vector<std::string>{"errors_mine.svg"});
+  EXPECT_EQ(FileNames(result / "tables"), (std::vector<std::string>{"lifetime.tex", "mine.tex"}));
+  EXPECT_EQ(CountFiles(result / "images"), 0);
+
+  // A run that fails leaves no manifest, by which its folder is known to be complete.
+  EXPECT_EQ(Run(words + Blind() + "--set odometry.bootstrap.min_disparity_px=200"), 6) << err;
+  EXPECT_FALSE(fs::exists(result / "manifest.json"));
+  EXPECT_FALSE(fs::exists(result / "trajectory.txt"));
+}
+
+TEST_F(PipelineTest, AForcedEvaluationLeavesNothingOfTheOneBefore) {
+  const std::string data = std::string(EVO_SOURCE_DIR) + "/tests/evaluation/data/";
+  const std::string words = "evaluate --force --ground-truth " + Quote(data + "gt.txt") + To("result") + " --estimate ";
+  ASSERT_EQ(Run(words + Quote(data + "est_drift.txt") + " --align none,sim3,sim3:2.5s,scale"), 0) << err;
+  EXPECT_EQ(CountFiles(folder / "result"), 9 + 4 * 5 * 4);
+  EXPECT_TRUE(fs::exists(folder / "result" / "errors_sim3-2.5s.csv"));
+  EXPECT_EQ(Run(words + Quote(Write("empty.txt", "")) + " --no-plots"), 4);
+  EXPECT_EQ(CountFiles(folder / "result"), 9 + 4 * 5 * 4) << "a wrong input is noticed before anything is removed";
+  ASSERT_EQ(Run(words + Quote(data + "est_drift.txt") + " --align sim3,none --no-plots"), 0) << err;
+  EXPECT_EQ(FileNames(folder / "result"),
+            (std::vector<std::string>{"errors.csv", "errors_none.csv", "manifest.json", "metrics.csv", "plots",
+                                      "summary.csv", "summary.json", "tables"}));
+  EXPECT_EQ(CountFiles(folder / "result" / "plots"), 0);
+}
+
 TEST_F(PipelineTest, DrawingsThatAreDueDuringOneFollowIt) {
   ASSERT_EQ(Run("track -q --no-plots --draw-every 0.001 --to 0.25 --events " + Quote(Sample()) + To("result")), 0);
   std::vector<std::string> sheets = FileNames(folder / "result" / "images");

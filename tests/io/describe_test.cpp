@@ -63,6 +63,18 @@ TEST_F(DescribeTest, MeasuresTrajectories) {
   EXPECT_EQ(truth["pose (cartographer) poses"], "2");
 }
 
+TEST_F(DescribeTest, CountsDepthMaps) {
+  MvsecGroundTruthWriter writer(folder / "a_gt.hdf5", {{0, {}}}, {{0, {}}});
+  for (const TimeNs t : {kNsPerSecond, kNsPerSecond * 3 / 2}) writer.AppendDepth(t, {3, 2, std::vector(6, 1.0)});
+  writer.Commit();
+  auto truth = Values(folder / "a_gt.hdf5", "MVSEC ground truth");
+  EXPECT_EQ(truth["depth maps"], "2 of 3 x 2 px");
+  EXPECT_EQ(truth["depth maps first stamp"], "1.000000000 s");
+  EXPECT_EQ(truth["depth maps mean rate"], "2.0 maps/s");
+  StoreTable(folder / "depth_gt.hdf5", "davis/left/depth_image_raw", {1, 2, 3}, {1, 1, 1, 1, 1, 1});
+  ExpectMentions(Refusal([&] { Describe(folder / "depth_gt.hdf5"); }), {"depth_image_raw_ts"});
+}
+
 TEST_F(DescribeTest, MeasuresTracks) {
   auto values = Values(Write("t.txt", "# id timestamp x y\n0 1.0 1 1\n4 1.0 2 2\n0 1.5 1 1\n0 3.0 1 1\n"), "tracks");
   EXPECT_EQ(values["tracks"], "2");

@@ -125,15 +125,31 @@ TEST_F(FiguresTest, LiveFeaturesCountEveryFrame) {
   EXPECT_NE(figure.script.find("'mean 1.0'"), std::string::npos) << figure.script;
 }
 
-TEST_F(FiguresTest, APoseAloneIsAPoint) {
+TEST_F(FiguresTest, APoseAloneBetweenGapsIsSeenAmongManyOthers) {
+  if (!HaveGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   Trajectory truth;
-  for (int i = 0; i <= 60; ++i) truth.push_back({i * (kNsPerSecond / 10), SE3({1, 0, 0, 0}, {0, 0, 1.0 * i})});
-  const auto script = [&](const Trajectory& estimate) {
-    const auto evaluation = Evaluate(truth, estimate, ParseAlignments("none"), {}, EvaluationOptions());
-    return ErrorFigure("e", evaluation, evaluation.alignments[0], ErrorAxis::kTime, {}).script;
+  Trajectory estimate;
+  for (int i = 0; i <= 400; ++i) {
+    truth.push_back({i * (kNsPerSecond / 10), SE3({1, 0, 0, 0}, {0, 0, 1.0 * i})});
+    if (i <= 100 || i == 200 || i >= 300) estimate.push_back(truth.back());
+  }
+  const auto evaluation = Evaluate(truth, estimate, ParseAlignments("none"), {}, EvaluationOptions());
+  const auto& result = evaluation.alignments[0];
+  const auto dots = [&](const std::string& name, const Figure& figure) {
+    Gnuplot(folder).Draw(name, figure);
+    const std::string svg = ReadFile(folder / (name + ".svg"));
+    int count = 0;
+    for (auto at = svg.find("<use xlink:href='#gpPt6' transform"); at != std::string::npos;
+         at = svg.find("<use xlink:href='#gpPt6' transform", at + 1)) {
+      ++count;
+    }
+    return count;
   };
-  EXPECT_NE(script({truth[30]}).find("with linespoints"), std::string::npos);
-  EXPECT_EQ(script(truth).find("with linespoints"), std::string::npos);
+  // At the beginning of each of the three stretches of the estimate; the truth has one; each start is marked again.
+  EXPECT_EQ(dots("e", ErrorFigure("e", evaluation, result, ErrorAxis::kTime, {})), 4 * 3);
+  EXPECT_EQ(dots("d", ErrorFigure("d", evaluation, result, ErrorAxis::kDistance, {})), 4 * 3);
+  EXPECT_EQ(dots("t", TrajectoryFigure("t", evaluation, result)), 1 + 3 + 2);  // and in the legend
+  EXPECT_EQ(dots("a", AxesFigure("a", evaluation, result, {})), 3 * (1 + 3));
 }
 
 TEST_F(FiguresTest, LongCurvesAreThinnedInThePictureOnly) {

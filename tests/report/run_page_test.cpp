@@ -32,7 +32,7 @@ TEST_F(RunPageTest, NamesCannotBreakIt) {
 
 TEST_F(RunPageTest, IsCompleteInItself) {
   const auto run = EvaluatedRun("day");
-  Write("day/plots/errors.svg", "<svg id=\"a\"/>");
+  Write("day/plots/axes.svg", "<svg id=\"a\"/>");
   Write("day/images/four_frames_1.png", "png");
   const std::string page = Page({run});
   EXPECT_NE(page.find("src=\"data:image/svg+xml;base64,PHN2ZyBpZD0iYSIvPg==\""), std::string::npos);
@@ -41,6 +41,31 @@ TEST_F(RunPageTest, IsCompleteInItself) {
   EXPECT_EQ(Count(page, "src="), 2);
   EXPECT_EQ(Count(page, "<link"), 0);
   EXPECT_EQ(Count(page, "{{"), 0);
+  EXPECT_EQ(Count(page, "class=\"thumbnails\""), 0);
+}
+
+TEST_F(RunPageTest, ShowsTrajectoryAndErrorsOfAllRunsBelowTheTable) {
+  const auto day = EvaluatedRun("day");
+  const auto night = EvaluatedRun("night");
+  Write("day/plots/errors.svg", "<svg viewBox=\"0 0 900 620\" id=\"a\"/>");
+  Write("day/plots/trajectory.svg", "<svg viewBox=\"0 0 9 0\" id=\"b\"/>");
+  Write("day/plots/errors_sim3.svg", "<svg/>");
+  Write("night/plots/errors.svg", "<svg/>");
+  const std::string page = Page({FailedRun("bad", "gone"), day, night});
+  const auto trajectory = page.find(
+      "<svg viewBox=\"0 0 900 600\" role=\"img\" aria-label=\"day: trajectory\"><image id=\"picture-2-trajectory\" "
+      "width=\"900\" height=\"600\" href=\"data:image/svg+xml;base64,");
+  const auto errors = page.find("<image id=\"picture-2-errors\" width=\"900\" height=\"620\" ");
+  EXPECT_LT(page.find("<h2>Results"), page.find("<h2>At a glance"));
+  EXPECT_LT(page.find("<h2>At a glance"), trajectory);
+  EXPECT_LT(trajectory, errors);
+  EXPECT_LT(errors, page.find("<image id=\"picture-3-errors\""));
+  EXPECT_LT(page.find("<image id=\"picture-3-errors\""), page.find("<h2>Configuration"));
+  EXPECT_EQ(Count(page, "<image "), 3);
+  // The details show the same without a copy.
+  EXPECT_EQ(Count(page, "data:image/svg+xml"), 4);
+  EXPECT_LT(page.find("id=\"run-2\""), page.find("<use href=\"#picture-2-errors\"/>"));
+  EXPECT_EQ(Count(page, "<use href="), 3);
 }
 
 TEST_F(RunPageTest, ShowsFailuresFirstAndInTheTable) {

@@ -65,7 +65,7 @@ TEST_F(TrackReportTest, SummaryNamesTheTruthAndWhatIsNotJudged) {
 
 TEST_F(TrackReportTest, FigureShowsQuartilesOverAge) {
   const Figure figure = TrackErrorFigure("e", SampleAccuracy());
-  ExpectHas(figure.data, "\n0.305000 6.000000 6.000000 6.000000 1\n");
+  ExpectHas(figure.data, "\n0.305 6 6 6 1\n");
   ExpectHas(figure.script, "error of the track (px)");
   TrackAccuracy triangulated = SampleAccuracy();
   triangulated.truth = "triangulated";
