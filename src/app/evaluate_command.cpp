@@ -163,11 +163,14 @@ Evaluation EvaluateTrajectory(const EvaluateArguments& arguments, const std::vec
 void WriteResults(const EvaluateArguments& arguments, const std::optional<Evaluation>& trajectory,
                   const std::optional<TrackEvaluation>& tracks) {
   const bool with_plots = !arguments.no_plots;
-  const std::string sequence = arguments.sequence.empty() ? SequenceName(arguments.ground_truth) : arguments.sequence;
+  std::string sequence = arguments.sequence;
+  if (sequence.empty()) {
+    sequence = SequenceName(arguments.ground_truth.empty() ? arguments.tracks.tracks : arguments.ground_truth);
+  }
   if (trajectory && arguments.common.force) RemoveEvaluationResults(arguments.out);
   if (tracks && arguments.common.force) RemoveTrackEvaluationResults(arguments.out);
   if (trajectory) WriteEvaluationResults(arguments.out, sequence, *trajectory, with_plots);
-  if (tracks) WriteTrackEvaluation(arguments.out, *tracks, with_plots);
+  if (tracks) WriteTrackEvaluation(arguments.out, sequence, *tracks, with_plots);
 }
 
 void RunEvaluate(const EvaluateArguments& arguments, const std::vector<std::string>& command_line) {

@@ -9,6 +9,7 @@
 #include "evo/core/error.hpp"
 #include "evo/odometry/resampling.hpp"
 #include "evo/report/figures.hpp"
+#include "evo/report/latex_tables.hpp"
 #include "evo/report/tables.hpp"
 #include "evo/report/track_report.hpp"
 
@@ -97,12 +98,13 @@ void AddTrackEvaluationOptions(CLI::App& command, TrackEvaluationArguments& argu
 }
 
 std::vector<std::string> TrackEvaluationResultNames() {
-  return {"track_quality.csv", "track_errors.csv", "lifetime.csv"};
+  return {"track_quality.csv", "track_errors.csv", "lifetime.csv", "tables/lifetime.tex"};
 }
 
 void RemoveTrackEvaluationResults(const std::filesystem::path& folder) {
   RemoveResults(folder, R"(manifest\.json|track_quality\.csv|track_errors\.csv|lifetime\.csv)");
-  RemovePlots(folder, "track_error|lifetime");
+  RemoveResults(folder / "tables", R"(lifetime\.tex)");
+  RemovePlots(folder, "track_error|lifetime|lifetime_seconds");
 }
 
 TrackEvaluation EvaluateTracks(const TrackEvaluationArguments& arguments, const TruePoses& poses, const Config& config,
@@ -131,14 +133,17 @@ TrackEvaluation EvaluateTracks(const TrackEvaluationArguments& arguments, const 
   return evaluation;
 }
 
-void WriteTrackEvaluation(const std::filesystem::path& folder, const TrackEvaluation& evaluation, bool with_plots) {
+void WriteTrackEvaluation(const std::filesystem::path& folder, const std::string& sequence,
+                          const TrackEvaluation& evaluation, bool with_plots) {
   WriteTrackQuality(folder / "track_quality.csv", evaluation.accuracy);
   WriteTrackErrors(folder / "track_errors.csv", evaluation.accuracy);
   WriteLifetimes(folder / "lifetime.csv", evaluation.lifetimes);
+  WriteLatex(folder / "tables" / "lifetime.tex", LifetimeTable(sequence, evaluation.lifetimes));
   if (!with_plots) return;
   Gnuplot gnuplot(folder / "plots");
   gnuplot.Draw("track_error", TrackErrorFigure("track_error", evaluation.accuracy));
   gnuplot.Draw("lifetime", LifetimeFigure("lifetime", evaluation.lifetimes));
+  gnuplot.Draw("lifetime_seconds", LifetimeSecondsFigure("lifetime_seconds", evaluation.lifetimes));
 }
 
 std::string FormatTrackEvaluation(const TrackEvaluation& evaluation) {

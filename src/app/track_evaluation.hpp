@@ -35,7 +35,7 @@ struct TruePoses {
   EvaluationInterval interval;
 };
 
-/// track_quality.csv, track_errors.csv and lifetime.csv.
+/// track_quality.csv, track_errors.csv, lifetime.csv and tables/lifetime.tex.
 std::vector<std::string> TrackEvaluationResultNames();
 
 struct TrackEvaluation {
@@ -50,8 +50,9 @@ TrackEvaluation EvaluateTracks(const TrackEvaluationArguments& arguments, const 
                                RunRecord* record);
 /// Removes those files and the plots from `folder`, and manifest.json, which tells of them.
 void RemoveTrackEvaluationResults(const std::filesystem::path& folder);
-/// Writes those files and plots/track_error and plots/lifetime. Throws Error.
-void WriteTrackEvaluation(const std::filesystem::path& folder, const TrackEvaluation& evaluation, bool with_plots);
+/// Writes those files and plots/track_error, plots/lifetime and plots/lifetime_seconds. Throws Error.
+void WriteTrackEvaluation(const std::filesystem::path& folder, const std::string& sequence,
+                          const TrackEvaluation& evaluation, bool with_plots);
 /// The summary for people.
 std::string FormatTrackEvaluation(const TrackEvaluation& evaluation);
 

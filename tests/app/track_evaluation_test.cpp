@@ -77,6 +77,8 @@ TEST_F(TrackEvaluationTest, OurTracksOfTheSampleKeepTheirQuality) {
   const std::string lifetimes = ReadFile(folder / "quality" / "lifetime.csv");
   const std::string of_track = ReadFile(folder / "tracks" / "lifetime.csv");
   EXPECT_EQ(lifetimes.substr(lifetimes.find("\ntracks,")), of_track.substr(of_track.find("\ntracks,")));
+  EXPECT_NE(ReadFile(folder / "quality" / "tables" / "lifetime.tex").find("Average lifetime (frames)"),
+            std::string::npos);
 }
 
 TEST_F(TrackEvaluationTest, DepthMapsGiveTheErrorAndTheTrueAge) {
