@@ -146,7 +146,7 @@ std::string EvaluateTrajectory(const EvaluateArguments& arguments, const std::ve
 void RunEvaluate(const EvaluateArguments& arguments, const std::vector<std::string>& command_line) {
   RequireInputs(arguments);
   Config config;
-  arguments.common.Apply(&config);
+  arguments.common.Apply(&config.parameters);
   Override(arguments, &config.evaluation);
   const auto alignments = ParseAlignments(arguments.align);
   const auto interval = ParseInterval(arguments);

@@ -21,7 +21,7 @@ struct OdometryArguments {
 
 void RunOdometryCommand(const OdometryArguments& arguments, const std::vector<std::string>& command_line) {
   Config config;
-  arguments.common.Apply(&config);
+  arguments.common.Apply(&config.parameters);
   auto results = OdometryResultNames();
   results.emplace_back("manifest.json");
   CheckOutputFolder(arguments.stage.out, results, arguments.common.force);

@@ -85,7 +85,7 @@ void RunEvaluationStage(const StageContext& context, const GroundTruth& truth, c
 
 void RunAll(const RunArguments& arguments, const std::vector<std::string>& command_line) {
   Config config;
-  arguments.common.Apply(&config);
+  arguments.common.Apply(&config.parameters);
   const auto alignments = ParseAlignments(arguments.align.empty() ? kUsualAlignments : arguments.align);
   CheckOutputFolder(arguments.stage.out, ResultNames(alignments), arguments.common.force);
   RunRecord record(command_line, config.parameters);

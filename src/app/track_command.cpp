@@ -20,7 +20,7 @@ struct TrackArguments {
 
 void RunTrack(const TrackArguments& arguments, const std::vector<std::string>& command_line) {
   Config config;
-  arguments.common.Apply(&config);
+  arguments.common.Apply(&config.parameters);
   auto results = TrackingResultNames();
   results.emplace_back("manifest.json");
   CheckOutputFolder(arguments.stage.out, results, arguments.common.force);
