@@ -55,9 +55,10 @@ EventSensor::EventSensor(int width, int height, const SensorOptions& options, st
       height_(static_cast<std::size_t>(height)),
       dark_radiance_(static_cast<float>(options.dark_radiance)),
       cut_off_slope_(static_cast<float>(2.0 * std::numbers::pi * options.bandwidth_hz)),
-      cut_off_low_(options.bandwidth_hz > 0.0
-                       ? std::min(static_cast<float>(2.0 * std::numbers::pi * options.dark_bandwidth_hz), cut_off_slope_)
-                       : kNever),
+      cut_off_low_(
+          options.bandwidth_hz > 0.0
+              ? std::min(static_cast<float>(2.0 * std::numbers::pi * options.dark_bandwidth_hz), cut_off_slope_)
+              : kNever),
       cut_off_high_(options.bandwidth_hz > 0.0 ? cut_off_slope_ : kNever),
       shot_noise_hz_(static_cast<float>(options.shot_noise_hz)),
       refractory_s_(options.refractory_s),
@@ -176,8 +177,9 @@ std::int32_t EventSensor::Predict(const float* radiance, float duration_s, Run* 
     const float cut_off = Lower(Higher(slope * mean_radiance, low), high);
     const float noise_rate = shot_noise * (1.0F - (1.0F - kBrightNoise) * Lower(mean_radiance, 1.0F));
     const float log1 = FastLog(radiance[k] + dark_radiance);
-    const float lag = (log1 - log0) / (duration_s * cut_off);
-    const float filtered1 = log1 - lag + (filtered0 - log0 + lag) * FastExpOfMinus(duration_s * cut_off);
+    const float constants = cut_off * duration_s;
+    const float share = FastOneMinusExp(constants);
+    const float filtered1 = filtered0 + (log0 - filtered0) * share + (log1 - log0) * (1.0F - share / constants);
     const float leaked = change_from[k] + leak[k] * duration_s;
     const float budget = budget_from[k] - noise_rate * duration_s;
     // Where the signal turns within the step it meets its input, so it stays within the input's range.
@@ -185,8 +187,8 @@ std::int32_t EventSensor::Predict(const float* radiance, float duration_s, Run* 
     const float highest = turns ? Higher(log0, log1) : Higher(filtered0, filtered1);
     const float lowest = turns ? Lower(log0, log1) : Lower(filtered0, filtered1);
     // Not fulfilled if NaN: blind.
-    const bool quiet = (leaked + (highest - filtered0) < on[k]) & (change_from[k] + (lowest - filtered0) > -off[k]) &
-                       (budget > 0.0F);
+    const bool quiet =
+        (leaked + (highest - filtered0) < on[k]) & (change_from[k] + (lowest - filtered0) > -off[k]) & (budget > 0.0F);
     to.log[k] = log1;
     to.filtered[k] = filtered1;
     to.change[k] = leaked + (filtered1 - filtered0);

@@ -1,5 +1,6 @@
 #include "simulation/step_signal.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -10,28 +11,38 @@ namespace evo {
 
 namespace {
 
-constexpr double kPrecision = 1e-8;  // s
+constexpr double kTimePrecision = 1e-8;    // s
+constexpr double kSignalPrecision = 1e-7;  // as of FastOneMinusExp
+constexpr double kHighestCutOff = 1e12;    // as good as none
 constexpr int kMaxIterations = 60;
 
 }  // namespace
 
 StepSignal::StepSignal(double input, double slope, double output, double cut_off, double leak)
-    : slope_(slope + leak), turn_(std::numeric_limits<double>::infinity()) {
-  const bool follows = std::isinf(cut_off);
-  cut_off_ = follows ? 0.0 : cut_off;
-  start_ = follows ? input : input - slope / cut_off;
-  transient_ = follows ? 0.0 : output - start_;
-  const double decay = slope_ / (cut_off_ * transient_);  // where the slope is 0
+    : output_(output),
+      lag_(input - output),
+      slope_(slope),
+      cut_off_(std::min(cut_off, kHighestCutOff)),
+      leak_(leak),
+      turn_(std::numeric_limits<double>::infinity()) {
+  const double decay = (slope_ + leak_) / (slope_ - cut_off_ * lag_);  // where the derivative is 0
   if (decay > 0.0 && decay < 1.0) turn_ = -std::log(decay) / cut_off_;
 }
 
-double StepSignal::Decay(double t) const {
-  return transient_ * static_cast<double>(FastExpOfMinus(static_cast<float>(cut_off_ * t)));
+double StepSignal::Share(double t) const {
+  return static_cast<double>(FastOneMinusExp(static_cast<float>(cut_off_ * t)));
 }
 
-double StepSignal::At(double t) const { return start_ + slope_ * t + Decay(t); }
+double StepSignal::At(double t) const {
+  if (t <= 0.0) return output_;
+  const double share = Share(t);
+  return output_ + lag_ * share + slope_ * (t - share / cut_off_) + leak_ * t;
+}
 
-double StepSignal::Slope(double t) const { return slope_ - cut_off_ * Decay(t); }
+double StepSignal::Slope(double t) const {
+  const double share = Share(t);
+  return leak_ + slope_ * share + cut_off_ * lag_ * (1.0 - share);
+}
 
 std::optional<StepSignal::Crossing> StepSignal::FirstCrossing(double from, double to, double low, double high) const {
   const bool turns = turn_ > from && turn_ < to;
@@ -53,10 +64,11 @@ double StepSignal::Solve(double from, double to, double level) const {
   double t = from + (to - from) * at_from / (at_from - at_to);
   for (int i = 0; i < kMaxIterations; ++i) {
     const double error = At(t) - level;
+    if (std::abs(error) < kSignalPrecision) return t;
     (error * at_from > 0.0 ? from : to) = t;
     double next = t - error / Slope(t);
     if (!(next >= from && next <= to)) next = 0.5 * (from + to);
-    if (std::abs(next - t) < kPrecision) return next;
+    if (std::abs(next - t) < kTimePrecision) return next;
     t = next;
   }
   return t;

@@ -4,9 +4,9 @@
 
 namespace evo {
 
-/// What a pixel compares with its thresholds during one step, over the time since the step's start: the exact answer
-/// of a first-order low-pass to an input that is linear in time, plus the leak,
-///   u(t) = input + slope (t - 1 / cut_off) + transient exp(-cut_off t) + leak t.
+/// What a pixel compares with its thresholds during one step, over the time t since the step's start: the exact answer
+/// of a first-order low-pass to an input that is linear in time, plus the leak. With x = cut_off t,
+///   u(t) = output + (input - output) (1 - exp(-x)) + slope t (1 - (1 - exp(-x)) / x) + leak t.
 /// It turns once at most.
 class StepSignal {
  public:
@@ -25,15 +25,16 @@ class StepSignal {
 
  private:
   double Slope(double t) const;
-  double Decay(double t) const;
+  double Share(double t) const;
   /// Where it equals `level`, in [from, to] that it crosses without turning.
   double Solve(double from, double to, double level) const;
 
-  double start_;      ///< of the straight part
-  double slope_;      ///< of the straight part, with the leak
-  double transient_;
+  double output_;
+  double lag_;  ///< of the output behind the input at the start
+  double slope_;
   double cut_off_;
-  double turn_;       ///< infinite: none
+  double leak_;
+  double turn_;  ///< infinite: none
 };
 
 }  // namespace evo

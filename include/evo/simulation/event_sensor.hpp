@@ -31,8 +31,8 @@ namespace evo {
 /// The defaults are a DAVIS346 as set up for the MVSEC drives: about three negative events for each positive one. They
 /// hold for day and night: it is the light that makes the pixels slow and noisy.
 struct SensorOptions {
-  double threshold_on = 0.60;       ///< change of log intensity that makes a positive event
-  double threshold_off = 0.19;      ///< and a negative one; lower: more negative events
+  double threshold_on = 0.65;       ///< change of log intensity that makes a positive event
+  double threshold_off = 0.18;      ///< and a negative one; lower: more negative events
   double threshold_spread = 0.03;   ///< standard deviation of both over the pixels; none falls below 0.01
   double bandwidth_hz = 300.0;      ///< cut-off of the photoreceptor from radiance 1 on; 0: none, y = L
   double dark_bandwidth_hz = 10.0;  ///< cut-off in the dark; between the two it is proportional to radiance

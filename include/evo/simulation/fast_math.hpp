@@ -18,18 +18,18 @@ inline float FastLog(float x) {
   return static_cast<float>(exponent) * 0.69314718F + series;
 }
 
-/// exp(-x) for x >= 0, relative error below 1e-6 up to 80 and 0 to 1e-34 from there on (infinity included); like
-/// FastLog without branches. x = k log(2) - r, |r| <= log(2) / 2, exp(r) by its series.
-inline float FastExpOfMinus(float x) {
+/// 1 - exp(-x) for x >= 0 (infinity included), relative error below 1e-6 for small and large x alike: the share of its
+/// way that a low-pass goes in x time constants. Without branches, like FastLog. x = k log(2) - r, |r| <= log(2) / 2,
+/// exp(r) - 1 by its series.
+inline float FastOneMinusExp(float x) {
   const float bounded = x < 80.0F ? x : 80.0F;
   const auto k = static_cast<std::int32_t>(bounded * 1.44269504F + 0.5F);
   const auto whole = static_cast<float>(k);
   const float r = (whole * 0.693359375F - bounded) - whole * 2.12194440e-4F;  // log(2) in two parts
   const float series =
-      1.0F +
-      r * (1.0F +
-           r * (0.5F + r * (1.0F / 6.0F + r * (1.0F / 24.0F + r * (1.0F / 120.0F + r * (1.0F / 720.0F))))));
-  return series * std::bit_cast<float>((127 - k) * (1 << 23));
+      r * (1.0F + r * (0.5F + r * (1.0F / 6.0F + r * (1.0F / 24.0F + r * (1.0F / 120.0F + r * (1.0F / 720.0F))))));
+  const float scale = std::bit_cast<float>((127 - k) * (1 << 23));
+  return (1.0F - scale) - scale * series;
 }
 
 }  // namespace evo
