@@ -12,9 +12,9 @@ namespace evo {
 namespace {
 
 constexpr std::uint64_t kStream = 0x68616E64;  // "hand"
-constexpr double kLowestShare = 0.15;           // of the highest frequency
-constexpr double kStartPeriods = 1.0;           // of the highest frequency, until the motion has its full size
-constexpr double kSliderStart = 0.1;            // s
+constexpr double kLowestShare = 0.15;          // of the highest frequency
+constexpr double kStartPeriods = 1.0;          // of the highest frequency, until the motion has its full size
+constexpr double kSliderStart = 0.1;           // s
 
 }  // namespace
 

@@ -11,9 +11,7 @@ namespace {
 /// The polynomial c1 u + c2 u^2 + c3 u^3 for u in [0, 1] with given end value and end slopes (Hermite).
 struct Cubic {
   Cubic(const Eigen::Vector3d& end, const Eigen::Vector3d& slope_start, const Eigen::Vector3d& slope_end)
-      : c1(slope_start),
-        c2(3.0 * end - 2.0 * slope_start - slope_end),
-        c3(slope_start + slope_end - 2.0 * end) {}
+      : c1(slope_start), c2(3.0 * end - 2.0 * slope_start - slope_end), c3(slope_start + slope_end - 2.0 * end) {}
   Eigen::Vector3d At(double u) const { return u * (c1 + u * (c2 + u * c3)); }
 
   Eigen::Vector3d c1, c2, c3;

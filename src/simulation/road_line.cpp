@@ -120,8 +120,8 @@ void RoadLine::LayCrossings(Random* random) {
 
 void RoadLine::LayHills(double slope, Random* random) {
   for (const double share : kHillShares) {
-    hills_.push_back({2.0 * std::numbers::pi / random->Uniform(80.0, 250.0),
-                      2.0 * std::numbers::pi * random->Uniform(), share * slope});
+    hills_.push_back({2.0 * std::numbers::pi / random->Uniform(80.0, 250.0), 2.0 * std::numbers::pi * random->Uniform(),
+                      share * slope});
   }
 }
 
@@ -135,8 +135,7 @@ void RoadLine::Integrate() {
     const double s = i * node_spacing_;
     nodes_.push_back({position, Tangent(Direction(s))});
     const auto tangent = [&](double u) { return Tangent(Direction(s + u * node_spacing_)); };
-    position +=
-        node_spacing_ / 18.0 * (5.0 * tangent(0.5 - offset) + 8.0 * tangent(0.5) + 5.0 * tangent(0.5 + offset));
+    position += node_spacing_ / 18.0 * (5.0 * tangent(0.5 - offset) + 8.0 * tangent(0.5) + 5.0 * tangent(0.5 + offset));
   }
 }
 

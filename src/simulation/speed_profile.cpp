@@ -7,11 +7,11 @@ namespace evo {
 
 namespace {
 
-constexpr double kStep = 0.005;                     // s
-constexpr int kHalfBox = 40;                        // samples: speeds are averaged over 0.4 s, twice
-constexpr double kReach = 2.0 * kHalfBox * kStep;   // so far a sample tells on its neighbours, s
-constexpr double kCell = 0.25;                      // m, of the speed limit
-constexpr double kRightAngleRadius = 8.0;           // m, where the turn speed holds
+constexpr double kStep = 0.005;                    // s
+constexpr int kHalfBox = 40;                       // samples: speeds are averaged over 0.4 s, twice
+constexpr double kReach = 2.0 * kHalfBox * kStep;  // so far a sample tells on its neighbours, s
+constexpr double kCell = 0.25;                     // m, of the speed limit
+constexpr double kRightAngleRadius = 8.0;          // m, where the turn speed holds
 
 /// The square of the speed that bends and the end of the road allow if the car brakes in time.
 class SpeedLimit {
@@ -24,8 +24,8 @@ class SpeedLimit {
     squares_[cells] = 0.0;
     for (int i = cells - 1; i >= 0; --i) {
       const double bend = lateral / std::max(1e-9, std::abs(road.At(i * cell_).curvature));
-      squares_[i] = std::min({options.speed_m_s * options.speed_m_s, bend,
-                              squares_[i + 1] + 2.0 * options.acceleration_m_s2 * cell_});
+      squares_[i] = std::min(
+          {options.speed_m_s * options.speed_m_s, bend, squares_[i + 1] + 2.0 * options.acceleration_m_s2 * cell_});
     }
   }
 

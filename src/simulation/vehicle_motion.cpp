@@ -18,16 +18,16 @@ namespace {
 constexpr std::uint64_t kStream = 0x636172;  // "car"
 constexpr double kRadPerDegree = std::numbers::pi / 180.0;
 
-constexpr double kIdle = 0.1;             // share of the vibration that a standing car has
-constexpr double kFullVibration = 5.0;    // m/s from which on it has all
-constexpr double kVibrationStart = 0.2;   // s in which it sets in, so that the run starts at the identity
+constexpr double kIdle = 0.1;            // share of the vibration that a standing car has
+constexpr double kFullVibration = 5.0;   // m/s from which on it has all
+constexpr double kVibrationStart = 0.2;  // s in which it sets in, so that the run starts at the identity
 
 // A passenger car's body on its springs.
 constexpr double kBumpHz = 1.8;
 constexpr double kBumpDamping = 0.35;
-constexpr double kBumpRise = 0.15;      // s in which the wheel climbs
-constexpr double kBumpEnd = 3.0;        // s after which nothing is left (0.1 % of one per cent)
-constexpr double kFullBump = 2.0;       // m/s from which on a bump has its full size
+constexpr double kBumpRise = 0.15;  // s in which the wheel climbs
+constexpr double kBumpEnd = 3.0;    // s after which less than 1e-5 of it is left
+constexpr double kFullBump = 2.0;   // m/s from which on a bump has its full size
 
 constexpr double kShortestPeriod = 0.1;  // s between bumps
 
@@ -103,20 +103,19 @@ class Vehicle {
 
   SE3 Pose(double t) const {
     const RoadLine::Point point = road_.At(Distance(t));
-    const Eigen::Quaterniond on_road =
-        so3::Exp({0.0, point.heading, 0.0}) * so3::Exp({point.pitch, 0.0, 0.0});
+    const Eigen::Quaterniond on_road = so3::Exp({0.0, point.heading, 0.0}) * so3::Exp({point.pitch, 0.0, 0.0});
     Eigen::Vector3d turn = Vibration(t);
     double heave = 0.0;
-    for (const Bump& bump : bumps_) {
-      if (t <= bump.time || t >= bump.time + kBumpEnd) continue;
-      const double x = bump.size * RawBump(t - bump.time);
+    auto bump = std::ranges::lower_bound(bumps_, t - kBumpEnd, {}, &Bump::time);
+    for (; bump != bumps_.end() && bump->time < t; ++bump) {
+      const double x = bump->size * RawBump(t - bump->time);
       turn.x() += x * options_.bump_pitch_deg * kRadPerDegree;
-      turn.z() += x * options_.bump_roll_deg * kRadPerDegree * bump.roll_side;
+      turn.z() += x * options_.bump_roll_deg * kRadPerDegree * bump->roll_side;
       heave += x * options_.bump_heave_m;
     }
     const double height = options_.camera_height_m;
-    return {on_road * so3::Exp(turn) * mount_, point.position + Eigen::Vector3d(0.0, height, 0.0) +
-                                                   on_road * Eigen::Vector3d(0.0, -height - heave, 0.0)};
+    return {on_road * so3::Exp(turn) * mount_,
+            point.position + Eigen::Vector3d(0.0, height, 0.0) + on_road * Eigen::Vector3d(0.0, -height - heave, 0.0)};
   }
 
  private:

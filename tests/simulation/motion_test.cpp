@@ -128,8 +128,8 @@ TEST(VehicleMotion, StartsAtTheIdentityAndKeepsItsHeightAboveTheRoad) {
   const VehicleMotion motion = MakeVehicleMotion(road, Quiet(), 1);
   for (double t = 0.0; t < 60.0; t += 0.7) {
     const auto point = road.At(motion.distance_m(FromSeconds(t)));
-    const Eigen::Vector3d below = motion.T_world_cam(FromSeconds(t)).Inverse() *
-                                  Eigen::Vector3d(point.position + Eigen::Vector3d(0.0, 1.5, 0.0));
+    const Eigen::Vector3d below =
+        motion.T_world_cam(FromSeconds(t)).Inverse() * Eigen::Vector3d(point.position + Eigen::Vector3d(0.0, 1.5, 0.0));
     ASSERT_LT((below - Eigen::Vector3d(0.0, 1.5, 0.0)).norm(), 1e-9) << "the road right below the camera";
     const Eigen::Vector3d ahead = motion.T_world_cam(FromSeconds(t)).rotation() * Eigen::Vector3d::UnitZ();
     ASSERT_NEAR(std::atan2(ahead.x(), ahead.z()), point.heading, 1e-9);
