@@ -12,13 +12,13 @@ namespace evo {
 struct StreetOptions {
   double road_width_m = 7.0;
   double pavement_width_m = 2.0;
-  double house_share = 0.85;        ///< of the way lined with facades; the rest is open
+  double house_share = 0.85;  ///< of the way lined with facades; the rest is open
   double trees_per_100_m = 6.0;
   double poles_per_100_m = 4.0;
   double parked_cars_per_100_m = 6.0;
   double moving_cars_per_100_m = 0.5;  ///< oncoming and ahead, both ways
   double moving_car_speed_m_s = 9.0;
-  std::string light = "day";        ///< or "night": lamps along the road, head lamps, lit windows
+  std::string light = "day";  ///< or "night": lamps along the road, head lamps, lit windows
 };
 void Register(Parameters& parameters, StreetOptions& options);
 
