@@ -30,18 +30,18 @@ class RoadLine {
 
 struct VehicleOptions {
   double duration_s = 60.0;
-  double speed_m_s = 7.5;            ///< cruising
+  double speed_m_s = 7.5;  ///< cruising
   double acceleration_m_s2 = 1.5;
-  double stop_every_s = 0.0;         ///< brake to a stop, stand, start again; 0: never
+  double stop_every_s = 0.0;  ///< brake to a stop, stand, start again; 0: never
   double stand_s = 2.0;
-  double start_at_rest_s = 1.0;      ///< stands so long at the start; 0: starts at cruising speed
-  double turn_speed_m_s = 4.0;       ///< slowed down to in right-angle turns
+  double start_at_rest_s = 1.0;  ///< stands so long at the start; 0: starts at cruising speed
+  double turn_speed_m_s = 4.0;   ///< slowed down to in right-angle turns
   double camera_height_m = 1.5;
-  double camera_pitch_deg = 0.0;     ///< positive: looks down
-  double vibration_deg = 0.05;       ///< standard deviation of the engine's and the road's small rotations
+  double camera_pitch_deg = 0.0;  ///< positive: looks down
+  double vibration_deg = 0.05;    ///< standard deviation of the engine's and the road's small rotations
   double vibration_hz = 12.0;
-  std::string bumps_at_s;            ///< "52,60": times; or "every 5": one every 5 s
-  double bump_pitch_deg = 2.0;       ///< size of the damped oscillation
+  std::string bumps_at_s;       ///< "52,60": times; or "every 5": one every 5 s
+  double bump_pitch_deg = 2.0;  ///< size of the damped oscillation
   double bump_heave_m = 0.06;
   double bump_roll_deg = 0.7;
 };
@@ -57,9 +57,9 @@ VehicleMotion MakeVehicleMotion(const RoadLine& road, const VehicleOptions& opti
 
 struct HandheldOptions {
   double duration_s = 20.0;
-  double translation_m = 0.3;      ///< standard deviation of the position on each axis
-  double rotation_deg = 12.0;      ///< and of the rotation about each
-  double frequency_hz = 0.5;       ///< highest of the smooth motion
+  double translation_m = 0.3;  ///< standard deviation of the position on each axis
+  double rotation_deg = 12.0;  ///< and of the rotation about each
+  double frequency_hz = 0.5;   ///< highest of the smooth motion
 };
 void Register(Parameters& parameters, HandheldOptions& options);
 CameraMotion MakeHandheldMotion(const HandheldOptions& options, std::uint64_t seed);

@@ -20,7 +20,7 @@ struct Surface {
   Eigen::Vector3d origin;
   Eigen::Vector3d edge_u;
   Eigen::Vector3d edge_v;
-  int texture = 0;                                        ///< index in Scene::textures
+  int texture = 0;                                         ///< index in Scene::textures
   Eigen::Vector2d texel_origin = Eigen::Vector2d::Zero();  ///< texture coordinates (u, v) at a = b = 0
   Eigen::Vector2d texels = Eigen::Vector2d::Ones();        ///< texels from a = 0 to 1 and from b = 0 to 1
   float shade = 1.0F;                                      ///< light that falls on it by its orientation, 1 in full sun
@@ -41,12 +41,12 @@ struct Lamp {
 };
 
 struct Lighting {
-  double ambient = 1.0;            ///< radiance of a white surface of shade 1, everywhere: 1 by day, near 0 by night
-  double sky = 2.0;                ///< radiance of what no surface covers
-  double head_lamps = 0.0;         ///< radiance of a white surface 1 m ahead of the camera in the beam's middle; 0: off
-  double flicker_hz = 120.0;       ///< of `lamps`
-  double flicker_depth = 0.5;      ///< relative amplitude of it, in [0, 1)
-  std::vector<Lamp> lamps;         ///< street lamps
+  double ambient = 1.0;        ///< radiance of a white surface of shade 1, everywhere: 1 by day, near 0 by night
+  double sky = 2.0;            ///< radiance of what no surface covers
+  double head_lamps = 0.0;     ///< radiance of a white surface 1 m ahead of the camera in the beam's middle; 0: off
+  double flicker_hz = 120.0;   ///< of `lamps`
+  double flicker_depth = 0.5;  ///< relative amplitude of it, in [0, 1)
+  std::vector<Lamp> lamps;     ///< street lamps
 };
 
 struct Scene {
