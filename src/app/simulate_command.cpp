@@ -49,8 +49,8 @@ TimeNs Duration(const SimulateArguments& arguments, const SimulatedRun& run) {
   const TimeNs duration = FromSeconds(*arguments.duration_s);
   if (duration <= run.duration) return duration;
   throw Error(ErrorKind::kUsage, "--duration: the motion ends after " + FormatTime(run.duration) +
-                                     " s; give less, or set vehicle.duration_s, handheld.duration_s or "
-                                     "slider.duration_s");
+                                     " s; give less, or raise duration_s of "
+                                     "motion.vehicle, motion.handheld or motion.slider");
 }
 
 template <typename... Values>

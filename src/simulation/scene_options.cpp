@@ -43,7 +43,7 @@ Error Misfit(const std::string& what) { return {ErrorKind::kConfiguration, what}
 
 Trajectory ReadMotionFile(const SceneOptions& options) {
   if (options.motion_file.empty()) {
-    throw Misfit("scene.motion is 'file' but scene.motion_file names none; give a TUM trajectory");
+    throw Misfit("motion.kind is 'file' but motion.file names none; give a TUM trajectory");
   }
   Trajectory trajectory = ReadTum(options.motion_file);
   if (trajectory.size() < 2) {
@@ -91,8 +91,8 @@ void Register(Parameters& p, SceneOptions& o) {
   const auto any = [](const std::string&) { return true; };
   p.Add("scene.seed", &o.seed, 0, std::numeric_limits<int>::max(), "of all that is left to chance");
   p.Add("scene.kind", &o.kind, {"street", "room", "slider"}, "the world");
-  p.Add("scene.motion", &o.motion, {"vehicle", "handheld", "slider", "file"}, "of the camera");
-  p.Add("scene.motion_file", &o.motion_file, any, "path", "trajectory for motion: file (TUM text)");
+  p.Add("motion.kind", &o.motion, {"vehicle", "handheld", "slider", "file"}, "of the camera");
+  p.Add("motion.file", &o.motion_file, any, "path", "trajectory for kind: file (TUM text)");
   p.Add("scene.calibration", &o.calibration, any, "davis346, davis240c or the path of a calibration", "of the camera");
   p.Add("road.shape", &o.road_shape, {"straight", "curved", "turns"}, "turns: at right angles");
   p.Add("road.length_m", &o.road_length_m, 0.0, 1e5, "0: what the motion needs (m)");
@@ -110,18 +110,14 @@ SimulatedRun MakeRun(const SceneOptions& options) {
   const Camera camera(FindCalibration(options.calibration));
   if (options.motion == "vehicle") {
     if (options.kind != "street") {
-      throw Misfit("scene.motion is 'vehicle' but scene.kind '" + options.kind +
+      throw Misfit("motion.kind is 'vehicle' but scene.kind '" + options.kind +
                    "' has no road; choose handheld, slider or file");
     }
     const RoadLine road = MakeRoad(options, options.vehicle.duration_s * options.vehicle.speed_m_s);
     const TimeNs duration = FromSeconds(options.vehicle.duration_s);
     const VehicleMotion motion = MakeVehicleMotion(road, options.vehicle, seed);
-    if (motion.distance_m(duration) > road.length()) {
-      throw Misfit("road.length_m is " + std::to_string(std::lround(road.length())) + " m but the drive leads over " +
-                   std::to_string(std::lround(motion.distance_m(duration))) + " m; lengthen the road or leave it at 0");
-    }
-    return {MakeStreet(road, options.street, options.vehicle.camera_height_m, seed), camera, motion.T_world_cam,
-            duration};
+    return {MakeStreet(road, options.street, options.vehicle.camera_height_m, seed, motion.distance_m), camera,
+            motion.T_world_cam, duration};
   }
   const Motion motion = MakeFreeMotion(options);
   const auto world = [&] {

@@ -64,8 +64,8 @@ Counts ShotNoise(double rate_hz, float radiance, double refractory_s) {
 }
 
 TEST(SensorNoise, ShotNoiseIsPoissonAndFallsWithLight) {
-  for (const auto& [radiance, share] : {std::pair(0.0F, 1.0), std::pair(0.5F, 0.625), std::pair(1.0F, 0.25),
-                                        std::pair(3.0F, 0.25)}) {
+  for (const auto& [radiance, share] :
+       {std::pair(0.0F, 1.0), std::pair(0.5F, 0.625), std::pair(1.0F, 0.25), std::pair(3.0F, 0.25)}) {
     const double expected = 4.0 * share * 5.0;
     const Counts counts = ShotNoise(4.0, radiance, 0.0);
     // Three standard errors over 2500 pixels.

@@ -11,8 +11,8 @@
 namespace evo {
 namespace {
 
-constexpr double kDistance = 2.0;   // m, of the wall
-constexpr double kSpeed = 0.5;      // m/s, to the right
+constexpr double kDistance = 2.0;  // m, of the wall
+constexpr double kSpeed = 0.5;     // m/s, to the right
 constexpr TimeNs kDuration = 100'000'000;
 
 /// Everything that a simulation delivers.
@@ -77,9 +77,7 @@ class SimulateTest : public ::testing::Test {
 
   const Scene scene = MakeWall();
   const Camera camera{Calibration{Distortion::kRadTan, 50, 40, 60.0, 60.0, 24.0, 20.0, {-0.1, 0.02, 0.0, 0.0, 0.0}}};
-  CameraMotion motion = [](TimeNs t) {
-    return SE3(Eigen::Quaterniond::Identity(), {kSpeed * ToSeconds(t), 0.0, 0.0});
-  };
+  CameraMotion motion = [](TimeNs t) { return SE3(Eigen::Quaterniond::Identity(), {kSpeed * ToSeconds(t), 0.0, 0.0}); };
   SimulationOptions options;
 };
 
