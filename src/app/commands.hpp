@@ -21,6 +21,7 @@ Command AddTrackCommand(CLI::App& app);
 Command AddOdometryCommand(CLI::App& app);
 Command AddEvaluateCommand(CLI::App& app);
 Command AddReportCommand(CLI::App& app);
+Command AddSimulateCommand(CLI::App& app);
 Command AddInfoCommand(CLI::App& app);
 Command AddConfigCommand(CLI::App& app);
 

@@ -21,7 +21,7 @@ void RunConfig(const ConfigArguments& arguments) {
     throw Error(ErrorKind::kUsage, "config: give either --print or --check FILE; see evo-run config --help");
   }
   Config config;
-  arguments.common.Apply(&config);
+  arguments.common.Apply(&config.parameters);
   if (arguments.print) {
     std::cout << config.parameters.ToYaml();
   } else {

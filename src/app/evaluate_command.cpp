@@ -176,7 +176,7 @@ void WriteResults(const EvaluateArguments& arguments, const std::optional<Evalua
 void RunEvaluate(const EvaluateArguments& arguments, const std::vector<std::string>& command_line) {
   RequireInputs(arguments);
   Config config;
-  arguments.common.Apply(&config);
+  arguments.common.Apply(&config.parameters);
   Override(arguments, &config.evaluation);
   const auto alignments = ParseAlignments(arguments.align);
   const auto interval = ParseInterval(arguments);

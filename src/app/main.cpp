@@ -29,8 +29,8 @@ int Run(int argc, char** argv) {
   app.footer("'evo-run COMMAND --help' shows the options of a command and an example.");
   const std::vector<evo::app::Command> commands{evo::app::AddRunCommand(app),      evo::app::AddTrackCommand(app),
                                                 evo::app::AddOdometryCommand(app), evo::app::AddEvaluateCommand(app),
-                                                evo::app::AddReportCommand(app),   evo::app::AddInfoCommand(app),
-                                                evo::app::AddConfigCommand(app)};
+                                                evo::app::AddReportCommand(app),   evo::app::AddSimulateCommand(app),
+                                                evo::app::AddInfoCommand(app),     evo::app::AddConfigCommand(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

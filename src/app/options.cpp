@@ -4,10 +4,10 @@
 
 namespace evo::app {
 
-void CommonOptions::Apply(Config* config) const {
+void CommonOptions::Apply(Parameters* parameters) const {
   SetUpLogging(quiet ? -1 : verbose);
-  if (!config_file.empty()) config->parameters.LoadFile(config_file);
-  for (const auto& setting : settings) config->parameters.Set(setting);
+  if (!config_file.empty()) parameters->LoadFile(config_file);
+  for (const auto& setting : settings) parameters->Set(setting);
 }
 
 GroundTruthSource CommonOptions::Source() const {
@@ -17,7 +17,11 @@ GroundTruthSource CommonOptions::Source() const {
 void AddConfigurationOptions(CLI::App& command, CommonOptions& options) {
   command.add_option("--config", options.config_file, "YAML file of parameters; see 'evo-run config --print'")
       ->type_name("FILE");
-  command.add_option("--set", options.settings, "one parameter, may be repeated; wins over --config")
+  AddSettingOptions(command, options);
+}
+
+void AddSettingOptions(CLI::App& command, CommonOptions& options) {
+  command.add_option("--set", options.settings, "one parameter, may be repeated; wins over the file")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   auto* const verbose = command.add_flag("-v,--verbose", options.verbose, "say more on stderr");

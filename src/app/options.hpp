@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/config.hpp"
+#include "evo/core/parameters.hpp"
 #include "evo/io/trajectory_io.hpp"
 
 namespace evo::app {
@@ -21,12 +21,14 @@ struct CommonOptions {
   bool quiet = false;
 
   /// Starts the log and reads the configuration: defaults, then the file, then the settings.
-  void Apply(Config* config) const;
+  void Apply(Parameters* parameters) const;
   GroundTruthSource Source() const;
 };
 
 /// --config, --set, -v and -q.
 void AddConfigurationOptions(CLI::App& command, CommonOptions& options);
+/// All of them but --config.
+void AddSettingOptions(CLI::App& command, CommonOptions& options);
 /// --threads and --force, for the commands that compute something.
 void AddComputeOptions(CLI::App& command, CommonOptions& options);
 /// --ground-truth-source and --align, for the commands that compare with the truth.

@@ -69,7 +69,7 @@ StageContext::StageContext(const CommonOptions& common, StageOptions stage_optio
       show_progress(!common.quiet),
       record(command_line,
              [&]() -> const Parameters& {
-               common.Apply(&config);
+               common.Apply(&config.parameters);
                results.emplace_back("manifest.json");
                CheckOutputFolder(options.out, results, force);
                return config.parameters;

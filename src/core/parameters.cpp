@@ -76,7 +76,7 @@ void Parameters::LoadFile(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   if (!file || std::filesystem::is_directory(path)) {
-    throw ConfigurationError(path.string(), "cannot read this configuration file; give a YAML file to --config");
+    throw ConfigurationError(path.string(), "cannot read this configuration file; give a YAML file");
   }
   LoadText(text, path.string());
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "evo/core/error.hpp"
+#include "evo/core/output_file.hpp"
 #include "evo/io/file_kind.hpp"
 #include "io/text_lines.hpp"
 
@@ -165,6 +166,39 @@ Calibration ReadCalibration(const std::filesystem::path& path, std::optional<Ima
                                                            std::to_string(size->height) + " px asked for");
   }
   return calibration;
+}
+
+void WriteCamchain(const std::filesystem::path& path, const Calibration& c) {
+  if (c.coefficients[4] != 0.0) {
+    throw Error(ErrorKind::kConfiguration, path.string() + ": a camchain has no place for the distortion's fifth " +
+                                               "coefficient, " + FormatNumber(c.coefficients[4]) +
+                                               "; write a calib.txt instead");
+  }
+  const auto list = [](const double* values, std::size_t count) {
+    std::string text;
+    for (std::size_t i = 0; i < count; ++i) text += (i ? ", " : "[") + FormatNumber(values[i]);
+    return text + "]\n";
+  };
+  const double intrinsics[] = {c.fx, c.fy, c.cx, c.cy};
+  OutputFile file(path);
+  file.stream() << "cam0:\n  camera_model: pinhole\n  intrinsics: " << list(intrinsics, 4)
+                << "  distortion_model: " << (c.distortion == Distortion::kRadTan ? "radtan" : "equidistant")
+                << "\n  distortion_coeffs: " << list(c.coefficients.data(), 4) << "  resolution: [" << c.width << ", "
+                << c.height << "]\n";
+  file.Commit();
+}
+
+void WriteUzhCalibration(const std::filesystem::path& path, const Calibration& c) {
+  if (c.distortion != Distortion::kRadTan) {
+    throw Error(ErrorKind::kConfiguration,
+                path.string() + ": a calib.txt holds radtan distortion, not equidistant; write a camchain instead");
+  }
+  OutputFile file(path);
+  file.stream() << FormatNumber(c.fx) << ' ' << FormatNumber(c.fy) << ' ' << FormatNumber(c.cx) << ' '
+                << FormatNumber(c.cy);
+  for (const double coefficient : c.coefficients) file.stream() << ' ' << FormatNumber(coefficient);
+  file.stream() << '\n';
+  file.Commit();
 }
 
 }  // namespace evo

@@ -1,6 +1,8 @@
 #include "evo/io/mvsec_writer.hpp"
 
+#include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "evo/core/error.hpp"
@@ -34,6 +36,7 @@ class Hdf5Output {
                              const std::vector<hsize_t>& chunk = {}, hid_t type = H5T_NATIVE_DOUBLE) {
     std::vector<hsize_t> most = shape;
     const hdf5::Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    H5Pset_obj_track_times(creation.get(), 0);  // the same content gives the same bytes
     if (!chunk.empty()) {
       most[0] = H5S_UNLIMITED;
       H5Pset_chunk(creation.get(), static_cast<int>(chunk.size()), chunk.data());
@@ -46,14 +49,16 @@ class Hdf5Output {
         H5Dclose);
   }
 
-  void Write(const std::string& name, const std::vector<hsize_t>& shape, const std::vector<double>& values) {
-    const hdf5::Handle dataset = CreateDataset(name, shape);
-    Check(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0);
+  template <typename Value>
+  void Write(const std::string& name, const std::vector<hsize_t>& shape, const std::vector<Value>& values) {
+    const hdf5::Handle dataset = CreateDataset(name, shape, {}, TypeOf(Value()));
+    Check(H5Dwrite(dataset.get(), TypeOf(Value()), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0);
   }
 
   /// Lengthens `dataset`, which has `rows` rows of the shape `row`, by those that `values` hold.
+  template <typename Value>
   void Append(const hdf5::Handle& dataset, hsize_t rows, const std::vector<hsize_t>& row,
-              const std::vector<double>& values) {
+              const std::vector<Value>& values) {
     hsize_t row_values = 1;
     for (const hsize_t size : row) row_values *= size;
     std::vector<hsize_t> block{values.size() / row_values};
@@ -66,7 +71,7 @@ class Hdf5Output {
     const hdf5::Handle memory(H5Screate_simple(static_cast<int>(block.size()), block.data(), nullptr), H5Sclose);
     const hdf5::Handle space(H5Dget_space(dataset.get()), H5Sclose);
     Check(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, offset.data(), nullptr, block.data(), nullptr) >= 0);
-    Check(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, memory.get(), space.get(), H5P_DEFAULT, values.data()) >= 0);
+    Check(H5Dwrite(dataset.get(), TypeOf(Value()), memory.get(), space.get(), H5P_DEFAULT, values.data()) >= 0);
   }
 
   void Commit() {
@@ -81,6 +86,10 @@ class Hdf5Output {
   }
 
  private:
+  static hid_t TypeOf(double) { return H5T_NATIVE_DOUBLE; }
+  static hid_t TypeOf(std::int64_t) { return H5T_NATIVE_INT64; }
+  static hid_t TypeOf(std::uint8_t) { return H5T_NATIVE_UINT8; }
+
   hdf5::Handle Checked(hid_t id, herr_t (*close)(hid_t)) const {
     Check(id >= 0);
     return {id, close};
@@ -103,9 +112,36 @@ void WritePoses(Hdf5Output* output, const std::string& name, const Trajectory& t
   output->Write(name + "_ts", {trajectory.size()}, seconds);
 }
 
+/// Images or maps of one size, one to a chunk, whose stamps are written once all are there.
+class ImageStack {
+ public:
+  ImageStack(std::string name, hid_t type) : name_(std::move(name)), type_(type) {}
+
+  bool empty() const { return stamps_.empty(); }
+
+  template <typename Value>
+  void Append(Hdf5Output* output, TimeNs t, int width, int height, const std::vector<Value>& values) {
+    const std::vector<hsize_t> image{static_cast<hsize_t>(height), static_cast<hsize_t>(width)};
+    if (empty()) dataset_ = output->CreateDataset(name_, {0, image[0], image[1]}, {1, image[0], image[1]}, type_);
+    output->Append(dataset_, stamps_.size(), image, values);
+    stamps_.push_back(NearestSeconds(t));
+  }
+
+  void Finish(Hdf5Output* output) {
+    output->Check(dataset_.Close());
+    output->Write(name_ + "_ts", {stamps_.size()}, stamps_);
+  }
+
+ private:
+  std::string name_;
+  hid_t type_;
+  hdf5::Handle dataset_;
+  std::vector<double> stamps_;  ///< s
+};
+
 }  // namespace
 
-struct MvsecEventWriter::State {
+struct MvsecDataWriter::State {
   explicit State(const std::filesystem::path& path) : output(path) {
     dataset = output.CreateDataset("davis/left/events", {0, 4}, {kChunkRows, 4});
   }
@@ -121,13 +157,15 @@ struct MvsecEventWriter::State {
   hdf5::Handle dataset;
   hsize_t rows = 0;
   std::vector<double> waiting;  ///< rows of a chunk that is not full yet
+  ImageStack images{"davis/left/image_raw", H5T_NATIVE_UINT8};
+  std::vector<std::int64_t> image_events;  ///< first event from the image on
 };
 
-MvsecEventWriter::MvsecEventWriter(const std::filesystem::path& path) : state_(std::make_unique<State>(path)) {}
+MvsecDataWriter::MvsecDataWriter(const std::filesystem::path& path) : state_(std::make_unique<State>(path)) {}
 
-MvsecEventWriter::~MvsecEventWriter() = default;
+MvsecDataWriter::~MvsecDataWriter() = default;
 
-void MvsecEventWriter::Append(const EventColumns& events) {
+void MvsecDataWriter::Append(const EventColumns& events) {
   auto& waiting = state_->waiting;
   for (std::size_t i = 0; i < events.size(); ++i) {
     waiting.push_back(events.x[i]);
@@ -138,14 +176,23 @@ void MvsecEventWriter::Append(const EventColumns& events) {
   }
 }
 
-void MvsecEventWriter::Commit() {
+void MvsecDataWriter::AppendImage(TimeNs t, const GreyImage& image, std::size_t events_before) {
+  state_->images.Append(&state_->output, t, image.width, image.height, image.grey);
+  state_->image_events.push_back(static_cast<std::int64_t>(events_before));
+}
+
+void MvsecDataWriter::Commit() {
   if (!state_->waiting.empty()) state_->Flush();
   state_->output.Check(state_->dataset.Close());
+  if (!state_->images.empty()) {
+    state_->images.Finish(&state_->output);
+    state_->output.Write("davis/left/image_raw_event_inds", {state_->image_events.size()}, state_->image_events);
+  }
   state_->output.Commit();
 }
 
 void WriteMvsecEvents(const std::filesystem::path& path, const EventColumns& events) {
-  MvsecEventWriter writer(path);
+  MvsecDataWriter writer(path);
   writer.Append(events);
   writer.Commit();
 }
@@ -154,8 +201,7 @@ struct MvsecGroundTruthWriter::State {
   explicit State(const std::filesystem::path& path) : output(path) {}
 
   Hdf5Output output;
-  hdf5::Handle maps;
-  std::vector<double> stamps;  ///< s, of the maps written
+  ImageStack maps{"davis/left/depth_image_raw", H5T_NATIVE_FLOAT};
 };
 
 MvsecGroundTruthWriter::MvsecGroundTruthWriter(const std::filesystem::path& path, const Trajectory& odometry,
@@ -168,20 +214,11 @@ MvsecGroundTruthWriter::MvsecGroundTruthWriter(const std::filesystem::path& path
 MvsecGroundTruthWriter::~MvsecGroundTruthWriter() = default;
 
 void MvsecGroundTruthWriter::AppendDepth(TimeNs t, const DepthMap& map) {
-  const std::vector<hsize_t> image{static_cast<hsize_t>(map.height), static_cast<hsize_t>(map.width)};
-  if (!state_->maps.valid()) {
-    state_->maps = state_->output.CreateDataset("davis/left/depth_image_raw", {0, image[0], image[1]},
-                                                {1, image[0], image[1]}, H5T_NATIVE_FLOAT);
-  }
-  state_->output.Append(state_->maps, state_->stamps.size(), image, map.depth);
-  state_->stamps.push_back(NearestSeconds(t));
+  state_->maps.Append(&state_->output, t, map.width, map.height, map.depth);
 }
 
 void MvsecGroundTruthWriter::Commit() {
-  if (state_->maps.valid()) {
-    state_->output.Check(state_->maps.Close());
-    state_->output.Write("davis/left/depth_image_raw_ts", {state_->stamps.size()}, state_->stamps);
-  }
+  if (!state_->maps.empty()) state_->maps.Finish(&state_->output);
   state_->output.Commit();
 }
 

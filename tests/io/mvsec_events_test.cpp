@@ -41,7 +41,7 @@ TEST_F(MvsecEventsTest, WritesInPiecesWhatItWritesAtOnce) {
   const EventColumns events = MakeEvents(70'000, 0);
   WriteMvsecEvents(folder / "whole.hdf5", events);
   {
-    MvsecEventWriter writer(folder / "pieces.hdf5");
+    MvsecDataWriter writer(folder / "pieces.hdf5");
     EventColumns piece;
     for (std::size_t i = 0; i < events.size(); ++i) {
       piece.push_back(events.t[i], events.x[i], events.y[i], events.polarity[i]);
@@ -54,7 +54,7 @@ TEST_F(MvsecEventsTest, WritesInPiecesWhatItWritesAtOnce) {
     writer.Commit();
   }
   ExpectSame(ReadAll(folder / "pieces.hdf5"), ReadAll(folder / "whole.hdf5"));
-  { MvsecEventWriter(folder / "never.hdf5").Append(events); }
+  { MvsecDataWriter(folder / "never.hdf5").Append(events); }
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 2);
 }
 

@@ -7,18 +7,23 @@
 #include "evo/events/event_columns.hpp"
 #include "evo/geometry/trajectory.hpp"
 #include "evo/io/depth_maps.hpp"
+#include "evo/io/grey_image.hpp"
 
 namespace evo {
 
-/// Writes `davis/left/events` (N x 4 float64: x y t p, t in seconds, p = +-1) block by block, in chunks that are
-/// byte-shuffled and deflated. The file appears whole on Commit() or not at all. Throws Error (kOutput).
-class MvsecEventWriter {
+/// Writes an MVSEC _data.hdf5: `davis/left/events` (N x 4 float64: x y t p, t in seconds, p = +-1) block by block, in
+/// chunks that are byte-shuffled and deflated, and, if there are any, the images `davis/left/image_raw` (N x height x
+/// width uint8, deflated) with `image_raw_ts` (s) and `image_raw_event_inds` (int64, the first event at that time or
+/// after it). The file appears whole on Commit() or not at all. Throws Error (kOutput).
+class MvsecDataWriter {
  public:
-  explicit MvsecEventWriter(const std::filesystem::path& path);
-  ~MvsecEventWriter();
+  explicit MvsecDataWriter(const std::filesystem::path& path);
+  ~MvsecDataWriter();
 
   /// Events in order of time, after those appended before.
   void Append(const EventColumns& events);
+  /// All images in order of time and of one size; `events_before` of all events have earlier stamps.
+  void AppendImage(TimeNs t, const GreyImage& image, std::size_t events_before);
   void Commit();
 
  private:

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "evo/io/grey_image.hpp"
 #include "evo/report/draw.hpp"
 
 namespace evo {
@@ -9,5 +10,7 @@ namespace evo {
 /// Writes `canvas` as an 8-bit RGB PNG, whole or not at all; the same image gives the same bytes.
 /// Throws Error (kOutput).
 void WritePng(const std::filesystem::path& path, const Canvas& canvas);
+/// The same for an 8-bit grey PNG.
+void WritePng(const std::filesystem::path& path, const GreyImage& image);
 
 }  // namespace evo

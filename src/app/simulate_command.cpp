@@ -1,0 +1,178 @@
+#include <cstdio>
+#include <iostream>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "app/commands.hpp"
+#include "app/error_place.hpp"
+#include "app/interrupt.hpp"
+#include "app/options.hpp"
+#include "app/output_folder.hpp"
+#include "app/run_record.hpp"
+#include "app/sequence_output.hpp"
+#include "evo/core/error.hpp"
+#include "evo/simulation/scene_options.hpp"
+
+namespace evo::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SimulateArguments {
+  CommonOptions common;  ///< its config_file is the scene
+  std::string format = "mvsec";
+  fs::path out;
+  std::optional<int> seed;
+  std::optional<double> duration_s;
+  double preview_every_s = 0.0;
+  bool print = false;
+};
+
+/// All parameters of the command.
+struct SimulateConfig {
+  SimulateConfig() {
+    Register(parameters, scene);
+    Register(parameters, output);
+  }
+  SimulateConfig(const SimulateConfig&) = delete;  // the parameters refer to the fields
+  SimulateConfig& operator=(const SimulateConfig&) = delete;
+
+  SceneOptions scene;
+  OutputOptions output;
+  Parameters parameters;
+};
+
+TimeNs Duration(const SimulateArguments& arguments, const SimulatedRun& run) {
+  if (!arguments.duration_s) return run.duration;
+  const TimeNs duration = FromSeconds(*arguments.duration_s);
+  if (duration <= run.duration) return duration;
+  throw Error(ErrorKind::kUsage, "--duration: the motion ends after " + FormatTime(run.duration) +
+                                     " s; give less, or raise duration_s of "
+                                     "motion.vehicle, motion.handheld or motion.slider");
+}
+
+template <typename... Values>
+std::string Format(const char* format, Values... values) {
+  char text[256];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+double PathLength(const Trajectory& poses) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    length += (poses[i].T_world_cam.translation() - poses[i - 1].T_world_cam.translation()).norm();
+  }
+  return length;
+}
+
+void PrintSummary(const std::string& name, const Camera& camera, const Trajectory& poses,
+                  const SimulationCounts& counts, double wall_s, int threads) {
+  const double duration_s = ToSeconds(poses.back().t);
+  const double pixels = static_cast<double>(camera.width()) * camera.height();
+  const auto events = static_cast<double>(counts.events);
+  const auto positive = static_cast<double>(counts.positive);
+  std::cout << "sequence   " << name
+            << Format(": %.1f s, %.1f m, %d x %d px\n", duration_s, PathLength(poses), camera.width(), camera.height())
+            << Format("events     %zu, %.3f M/s, %.2f negative for each positive one\n", counts.events,
+                      1e-6 * events / duration_s, positive > 0 ? (events - positive) / positive : 0.0)
+            << Format("rendering  each pixel %.0f times a second, %zu images, %zu depth maps\n",
+                      static_cast<double>(counts.pixel_renders) / pixels / duration_s, counts.images, counts.depth_maps)
+            << Format("speed      %.2f s of computing for a simulated second on %d threads\n", wall_s / duration_s,
+                      threads);
+}
+
+void PrintFiles(const fs::path& out, const std::vector<std::string>& names) {
+  for (const auto& name : names) {
+    const fs::path path = out / name;
+    if (!fs::is_regular_file(path)) continue;
+    std::cout << "file       " << path.string()
+              << Format(", %.1f MB\n", 1e-6 * static_cast<double>(fs::file_size(path)));
+  }
+}
+
+void AddInputs(const SimulateArguments& arguments, const SceneOptions& scene, RunRecord* record) {
+  if (!arguments.common.config_file.empty()) record->AddInput("scene", arguments.common.config_file);
+  if (scene.motion == "file") record->AddInput("motion", scene.motion_file);
+  if (fs::is_regular_file(scene.calibration)) record->AddInput("calibration", scene.calibration);
+}
+
+void RunSimulate(const SimulateArguments& arguments, const std::vector<std::string>& command_line) {
+  SimulateConfig config;
+  arguments.common.Apply(&config.parameters);
+  if (arguments.seed) config.scene.seed = *arguments.seed;
+  if (arguments.print) {
+    std::cout << config.parameters.ToYaml();
+    return;
+  }
+  if (arguments.out.empty()) throw Error(ErrorKind::kUsage, "simulate: --out is required; see evo-run simulate --help");
+  if (arguments.preview_every_s > 0.0 && config.scene.simulation.image_hz == 0.0) {
+    throw Error(ErrorKind::kUsage, "--preview-every shows images, but simulation.image_hz is 0; raise it");
+  }
+  const std::string scene_file = arguments.common.config_file;
+  const std::string name = scene_file.empty() ? config.scene.kind : fs::path(scene_file).stem().string();
+  const auto format = arguments.format == "uzh" ? SequenceFormat::kUzh : SequenceFormat::kMvsec;
+  const auto results = SequenceResultNames(format, name);
+  auto checked = results;
+  checked.emplace_back("manifest.json");
+  CheckOutputFolder(arguments.out, checked, arguments.common.force);
+
+  const SimulatedRun run =
+      NamingPlace(scene_file.empty() ? "simulate" : scene_file, [&] { return MakeRun(config.scene); });
+  const TimeNs duration = Duration(arguments, run);
+  const Trajectory poses = Sample(run.motion, duration, config.output.pose_hz);
+  RunRecord record(command_line, config.parameters);
+  AddInputs(arguments, config.scene, &record);
+  if (arguments.common.force) RemoveSequenceImages(arguments.out);
+  const InterruptGuard guard(arguments.out);
+  ThreadPool pool(arguments.common.threads);
+  const auto output = MakeSequenceOutput(format, arguments.out, name, run.camera, poses, config.output);
+  PreviewOutput preview(output.get(), arguments.out / "preview", FromSeconds(arguments.preview_every_s));
+  SimulationSink* const sink = arguments.preview_every_s > 0.0 ? static_cast<SimulationSink*>(&preview) : output.get();
+  const SimulationCounts counts = record.Time("simulate", [&] {
+    Progress progress("simulate", !arguments.common.quiet);
+    return Simulate(run.scene, run.camera, run.motion, duration, config.scene.sensor, config.scene.simulation,
+                    static_cast<std::uint64_t>(config.scene.seed), &pool, &progress, sink);
+  });
+  output->Commit();
+  record.AddCount("events", counts.events);
+  record.AddCount("positive_events", counts.positive);
+  record.AddCount("images", counts.images);
+  record.AddCount("depth_maps", counts.depth_maps);
+  record.AddCount("pixel_renders", counts.pixel_renders);
+  WriteManifest(arguments.out / "manifest.json", record.manifest);
+  PrintSummary(name, run.camera, poses, counts, record.manifest.stages.back().seconds, pool.size());
+  PrintFiles(arguments.out, results);
+}
+
+}  // namespace
+
+Command AddSimulateCommand(CLI::App& app) {
+  auto arguments = std::make_shared<SimulateArguments>();
+  auto* const parser = app.add_subcommand("simulate", "Make a sequence with exact ground truth from a scene file");
+  parser->add_option("SCENE", arguments->common.config_file, "YAML file; default: a street by day, see --print")
+      ->type_name("");
+  parser->add_option("--format", arguments->format, "layout of the files: mvsec (HDF5) or uzh (text and PNG)")
+      ->check(CLI::IsMember({"mvsec", "uzh"}).description(""))
+      ->capture_default_str()
+      ->type_name("mvsec|uzh");
+  parser->add_option("--out", arguments->out, "folder for the sequence; created if need be")->type_name("DIR");
+  parser->add_option("--seed", arguments->seed, "instead of the scene's own: another street, other noise")
+      ->check(CLI::Range(0, std::numeric_limits<int>::max()).description(""))
+      ->type_name("N");
+  parser->add_option("--duration", arguments->duration_s, "end after this many seconds of the scene")
+      ->check(CLI::Range(0.001, 1e6).description(""))
+      ->type_name("S");
+  parser->add_option("--preview-every", arguments->preview_every_s, "draw image and events every S seconds")
+      ->check(CLI::Range(0.001, 1e6).description(""))
+      ->type_name("S");
+  parser->add_flag("--print", arguments->print, "print every parameter of the scene and its meaning as YAML instead");
+  AddSettingOptions(*parser, arguments->common);
+  AddComputeOptions(*parser, arguments->common);
+  parser->footer("Example:\n  evo-run simulate configs/scenes/driving_day.yaml --duration 3 --out out/driving_day");
+  return {parser, [arguments](const auto& command_line) { RunSimulate(*arguments, command_line); }};
+}
+
+}  // namespace evo::app

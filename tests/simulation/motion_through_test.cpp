@@ -1,0 +1,84 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "evo/core/error.hpp"
+#include "evo/simulation/motion.hpp"
+
+namespace evo {
+namespace {
+
+constexpr TimeNs kEpoch = 1'504'645'177'000'000'000;
+
+double Difference(const SE3& a, const SE3& b) { return (a.Inverse() * b).Log().norm(); }
+
+TEST(MotionThrough, PassesThroughThePosesAtUnevenTimes) {
+  const CameraMotion motion = MakeHandheldMotion({}, 11);
+  Trajectory trajectory;
+  Random random(3);
+  for (TimeNs t = 0; t < FromSeconds(20.0); t += FromSeconds(random.Uniform(0.02, 0.2))) {
+    trajectory.push_back({kEpoch + t, motion(t)});
+  }
+  const CameraMotion through = MakeMotionThrough(trajectory);
+  EXPECT_LT(Difference(through(0), SE3()), 1e-12);
+  for (const auto& pose : trajectory) ASSERT_LT(Difference(through(pose.t - kEpoch), pose.T_world_cam), 1e-9);
+}
+
+TEST(MotionThrough, GivesASmoothMotionBackFromItsSamples) {
+  const CameraMotion motion = MakeHandheldMotion({}, 12);
+  const auto worst = [&](double rate) {
+    const CameraMotion through = MakeMotionThrough(TrueTrajectory(motion, FromSeconds(20.0), rate, kEpoch));
+    double largest = 0.0;
+    for (double t = 1.0; t < 19.0; t += 0.0137) {
+      largest = std::max(largest, Difference(through(FromSeconds(t)), motion(FromSeconds(t))));
+    }
+    return largest;
+  };
+  EXPECT_LT(worst(20.0), 2e-4);
+  EXPECT_LT(worst(40.0), worst(20.0) / 6.0) << "third order or better";
+}
+
+TEST(MotionThrough, VelocityIsContinuousAtThePoses) {
+  const CameraMotion motion = MakeHandheldMotion({20.0, 0.3, 30.0, 1.0}, 13);
+  const CameraMotion through = MakeMotionThrough(TrueTrajectory(motion, FromSeconds(20.0), 5.0, kEpoch));
+  constexpr TimeNs kStep = 10'000;
+  for (int i = 1; i < 100; ++i) {
+    const TimeNs t = i * FromSeconds(0.2);
+    const Vector6d before = (through(t - kStep).Inverse() * through(t)).Log() / ToSeconds(kStep);
+    const Vector6d after = (through(t).Inverse() * through(t + kStep)).Log() / ToSeconds(kStep);
+    ASSERT_LT((after - before).norm(), 2e-3) << t;
+    ASSERT_GT(after.norm(), 1e-3);
+  }
+}
+
+TEST(MotionThrough, MovesTheWorldToTheFirstPose) {
+  const CameraMotion motion = MakeHandheldMotion({}, 14);
+  const SE3 T_other_world = SE3::Exp((Vector6d() << 5.0, -3.0, 2.0, 0.4, 1.0, -0.7).finished());
+  Trajectory trajectory = TrueTrajectory(motion, FromSeconds(5.0), 20.0, 0);
+  const CameraMotion here = MakeMotionThrough(trajectory);
+  for (auto& pose : trajectory) pose.T_world_cam = T_other_world * pose.T_world_cam;
+  const CameraMotion there = MakeMotionThrough(trajectory);
+  EXPECT_LT(Difference(here(FromSeconds(3.21)), there(FromSeconds(3.21))), 1e-9);
+}
+
+TEST(MotionThrough, TwoPosesMakeASteadyMotion) {
+  const SE3 end(so3::Exp({0.0, 0.6, 0.0}), {1.0, 2.0, 3.0});
+  const CameraMotion motion = MakeMotionThrough({{0, SE3()}, {kNsPerSecond, end}});
+  const SE3 middle = motion(kNsPerSecond / 4);
+  EXPECT_LT((middle.translation() - Eigen::Vector3d(0.25, 0.5, 0.75)).norm(), 1e-12);
+  EXPECT_LT((so3::Log(middle.rotation()) - Eigen::Vector3d(0.0, 0.15, 0.0)).norm(), 1e-12);
+}
+
+TEST(MotionThrough, RefusesWhatIsNoMotionAndTimesOutside) {
+  EXPECT_THROW(MakeMotionThrough({}), Error);
+  EXPECT_THROW(MakeMotionThrough({{0, SE3()}}), Error);
+  EXPECT_THROW(MakeMotionThrough({{5, SE3()}, {5, SE3()}}), Error);
+  EXPECT_THROW(MakeMotionThrough({{0, SE3()}, {5, SE3({1, 0, 0, 0}, {std::nan(""), 0, 0})}}), Error);
+  const CameraMotion motion = MakeMotionThrough({{100, SE3()}, {200, SE3()}});
+  EXPECT_NO_THROW(motion(100));
+  EXPECT_THROW(motion(101), Error);
+  EXPECT_THROW(motion(-1), Error);
+}
+
+}  // namespace
+}  // namespace evo
