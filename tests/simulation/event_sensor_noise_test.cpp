@@ -64,8 +64,8 @@ Counts ShotNoise(double rate_hz, float radiance, double refractory_s) {
 }
 
 TEST(SensorNoise, ShotNoiseIsPoissonAndFallsWithLight) {
-  for (const auto& [radiance, share] : {std::pair(0.0F, 1.0), std::pair(0.5F, 0.625), std::pair(1.0F, 0.25),
-                                        std::pair(3.0F, 0.25)}) {
+  for (const auto& [radiance, share] :
+       {std::pair(0.0F, 1.0), std::pair(0.5F, 0.625), std::pair(1.0F, 0.25), std::pair(3.0F, 0.25)}) {
     const double expected = 4.0 * share * 5.0;
     const Counts counts = ShotNoise(4.0, radiance, 0.0);
     // Three standard errors over 2500 pixels.
@@ -75,6 +75,35 @@ TEST(SensorNoise, ShotNoiseIsPoissonAndFallsWithLight) {
   }
   // A blind pixel has none: 1 / rate + refractory between two.
   EXPECT_NEAR(ShotNoise(4.0, 0.0F, 0.05).mean, 5.0 / 0.3, 0.2);
+}
+
+TEST(SensorNoise, LightOfAStepIsTheMeanOfItsEnds) {
+  SensorOptions options = IdealSensor(9.0, 9.0);
+  options.shot_noise_hz = 4.0;
+  Show show(50, 50, options, 11);
+  show.Run(0, 5'000 * kMs, 5'000 * kMs, [](int, int, double t) { return static_cast<float>(t / 5.0); });
+  const double expected = 2500.0 * 5.0 * 4.0 * 0.625;
+  EXPECT_NEAR(static_cast<double>(show.events.size()), expected, 3.0 * std::sqrt(expected));
+}
+
+TEST(SensorNoise, ShotNoiseComesAsOftenBetweenOtherEvents) {
+  SensorOptions options = IdealSensor(0.3, 0.2);
+  options.leak_hz = 20.0;
+  options.shot_noise_hz = 4.0;
+  Show show(50, 50, options, 11);
+  show.Run(0, 5'000 * kMs, 25 * kMs, [](int, int, double) { return 0.0F; });
+  const double expected = 2500.0 * 5.0 * 4.0 / 2.0;
+  EXPECT_NEAR(CountOf(show.events, -1), expected, 3.0 * std::sqrt(expected));
+  // Each pixel has its own: both of two neighbours fire within 1 ms as often as chance has it.
+  const auto pixels = ByPixel(show.events);
+  int close = 0;
+  for (int y = 0; y < 50; ++y) {
+    for (int x = 0; x < 49; ++x) {
+      const TimeNs gap = pixels.at({x, y}).t.front() - pixels.at({x + 1, y}).t.front();
+      close += std::abs(gap) < kMs ? 1 : 0;
+    }
+  }
+  EXPECT_LT(close, 50 * 49 / 10);
 }
 
 TEST(SensorNoise, HotAndDeadPixelsAreAsManyAsAskedFor) {

@@ -166,8 +166,7 @@ TEST(EventSensor, IntegratedEventsGiveBackTheLogChange) {
   ASSERT_EQ(on.size(), static_cast<std::size_t>(kSize * kSize));
   ASSERT_EQ(off.size(), on.size());
   Show show(kSize, kSize, options, 5);
-  show.Run(0, 200 * kMs, 4 * kMs,
-           [&](int x, int y, double t) { return RadianceOfLog(Wander(x, y, t), options); });
+  show.Run(0, 200 * kMs, 4 * kMs, [&](int x, int y, double t) { return RadianceOfLog(Wander(x, y, t), options); });
   auto pixels = ByPixel(show.events);
   double mean = 0.0, variance = 0.0;
   for (int x = 0, i = 0; x < kSize; ++x) {
@@ -215,8 +214,9 @@ SortedEvents DefaultSensorEvents(std::uint64_t seed, int tile, bool backwards, d
   options.readout_row_s = readout_row_s;
   Show show(75, 41, options, seed, tile);
   if (backwards) std::reverse(show.tiles.begin(), show.tiles.end());
-  show.Run(0, 300 * kMs, 3 * kMs,
-           [](int x, int y, double t) { return static_cast<float>(0.5 + 0.45 * std::sin(0.4 * x + 0.1 * y - 40 * t)); });
+  show.Run(0, 300 * kMs, 3 * kMs, [](int x, int y, double t) {
+    return static_cast<float>(0.5 + 0.45 * std::sin(0.4 * x + 0.1 * y - 40 * t));
+  });
   SortedEvents sorted;
   const EventColumns& e = show.events;
   for (std::size_t i = 0; i < e.size(); ++i) sorted.emplace_back(e.y[i], e.x[i], e.t[i], e.polarity[i]);
