@@ -167,21 +167,19 @@ std::int32_t EventSensor::Predict(const float* radiance, float duration_s, Run* 
   const float* leak = &leak_[run->first];
   Run& __restrict to = *run;
   const std::size_t count = to.count;
-  const float slope = cut_off_slope_, low = cut_off_low_, high = cut_off_high_;
-  const float shot_noise = shot_noise_hz_, dark_radiance = dark_radiance_;
   std::int32_t any = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const float log0 = log_from[k];
     const float filtered0 = filtered_from[k];
     const float mean_radiance = 0.5F * (radiance_from[k] + radiance[k]);
-    const float cut_off = Lower(Higher(slope * mean_radiance, low), high);
-    const float noise_rate = shot_noise * (1.0F - (1.0F - kBrightNoise) * Lower(mean_radiance, 1.0F));
-    const float log1 = FastLog(radiance[k] + dark_radiance);
-    const float constants = cut_off * duration_s;
+    const float log1 = FastLog(radiance[k] + dark_radiance_);
+    to.cut_off[k] = Lower(Higher(cut_off_slope_ * mean_radiance, cut_off_low_), cut_off_high_);
+    to.noise_rate[k] = shot_noise_hz_ * (1.0F - (1.0F - kBrightNoise) * Lower(mean_radiance, 1.0F));
+    const float constants = to.cut_off[k] * duration_s;
     const float share = FastOneMinusExp(constants);
     const float filtered1 = filtered0 + (log0 - filtered0) * share + (log1 - log0) * (1.0F - share / constants);
     const float leaked = change_from[k] + leak[k] * duration_s;
-    const float budget = budget_from[k] - noise_rate * duration_s;
+    const float budget = budget_from[k] - to.noise_rate[k] * duration_s;
     // Where the signal turns within the step it meets its input, so it stays within the input's range.
     const bool turns = (log0 - filtered0) * (log1 - filtered1) < 0.0F;
     const float highest = turns ? Higher(log0, log1) : Higher(filtered0, filtered1);
@@ -193,8 +191,6 @@ std::int32_t EventSensor::Predict(const float* radiance, float duration_s, Run* 
     to.filtered[k] = filtered1;
     to.change[k] = leaked + (filtered1 - filtered0);
     to.budget[k] = budget;
-    to.cut_off[k] = cut_off;
-    to.noise_rate[k] = noise_rate;
     to.busy[k] = quiet ? 0 : 1;
     any |= to.busy[k];
   }
@@ -239,13 +235,8 @@ void EventSensor::Resolve(const Step& step, std::size_t k, Run* run, EventColumn
       change = signal.At(step.duration_s) - zero;
       break;
     }
-    int sign = 0;
-    if (crossing) {
-      sign = crossing->sign;
-    } else {
-      sign = random_[pixel].Chance(0.5) ? 1 : -1;
-      budget = random_[pixel].Exponential();
-    }
+    const int sign = crossing ? crossing->sign : random_[pixel].Chance(0.5) ? 1 : -1;
+    if (!crossing) budget = random_[pixel].Exponential();
     const TimeNs event_time = step.from + FromSeconds(event_at);
     Emit(pixel, event_time, sign, events);
     blind_until_[pixel] = event_time + FromSeconds(refractory_s_);

@@ -77,6 +77,35 @@ TEST(SensorNoise, ShotNoiseIsPoissonAndFallsWithLight) {
   EXPECT_NEAR(ShotNoise(4.0, 0.0F, 0.05).mean, 5.0 / 0.3, 0.2);
 }
 
+TEST(SensorNoise, LightOfAStepIsTheMeanOfItsEnds) {
+  SensorOptions options = IdealSensor(9.0, 9.0);
+  options.shot_noise_hz = 4.0;
+  Show show(50, 50, options, 11);
+  show.Run(0, 5'000 * kMs, 5'000 * kMs, [](int, int, double t) { return static_cast<float>(t / 5.0); });
+  const double expected = 2500.0 * 5.0 * 4.0 * 0.625;
+  EXPECT_NEAR(static_cast<double>(show.events.size()), expected, 3.0 * std::sqrt(expected));
+}
+
+TEST(SensorNoise, ShotNoiseComesAsOftenBetweenOtherEvents) {
+  SensorOptions options = IdealSensor(0.3, 0.2);
+  options.leak_hz = 20.0;
+  options.shot_noise_hz = 4.0;
+  Show show(50, 50, options, 11);
+  show.Run(0, 5'000 * kMs, 25 * kMs, [](int, int, double) { return 0.0F; });
+  const double expected = 2500.0 * 5.0 * 4.0 / 2.0;
+  EXPECT_NEAR(CountOf(show.events, -1), expected, 3.0 * std::sqrt(expected));
+  // Each pixel has its own: both of two neighbours fire within 1 ms as often as chance has it.
+  const auto pixels = ByPixel(show.events);
+  int close = 0;
+  for (int y = 0; y < 50; ++y) {
+    for (int x = 0; x < 49; ++x) {
+      const TimeNs gap = pixels.at({x, y}).t.front() - pixels.at({x + 1, y}).t.front();
+      close += std::abs(gap) < kMs ? 1 : 0;
+    }
+  }
+  EXPECT_LT(close, 50 * 49 / 10);
+}
+
 TEST(SensorNoise, HotAndDeadPixelsAreAsManyAsAskedFor) {
   SensorOptions options = IdealSensor(0.3, 0.2);
   options.hot_pixels = 0.01;
