@@ -17,6 +17,7 @@ void AddCrossings(const StreetTask& task) {
   Random random(task.seed, kStream);
   const int asphalt = task.builder.Add(PaintAsphalt(random, 1024));
   const int pavement = task.builder.Add(PaintPavement(random));
+  const int ground = task.builder.Add(PaintGround(random));
   const int kerb = task.builder.Add(PaintKerb(random));
   const double width = task.plan.layout().width();
   const double strip = task.plan.pavement();
@@ -45,6 +46,9 @@ void AddCrossings(const StreetTask& task) {
         add(edge, along, kKerbHeight * down, kerb, 100.0, -side * across);
         add(edge, side * strip * across, kKerbHeight * down, kerb, 100.0, -arm);
       }
+      const double wide = width + 2.0 * strip + 40.0;
+      add(start + from * arm - 0.5 * wide * across + 0.1 * down, wide * across, (kArmLength - from + 20.0) * arm,
+          ground, 25.0, -down);
       drop += 0.004;
     }
     // Asphalt around, for the corners.

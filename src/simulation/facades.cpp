@@ -34,6 +34,7 @@ HouseFactory::HouseFactory(SceneBuilder* builder, bool night, Random* random)
       walls_(PaintMany(builder, random, 3, PaintWall)),
       signs_(PaintMany(builder, random, 6, PaintShopSign)),
       roof_(builder->Add(PaintRoof(*random))),
+      gable_(builder->Add(PaintGable(*random))),
       plain_(builder->Add(PaintPlain(*random, 0.6))) {}
 
 void HouseFactory::Build(const Place& place, Random* random) {
@@ -94,7 +95,12 @@ void HouseFactory::AddEaves(const Place& place, double height, double tone, Rand
   look.tone *= 0.5;  // in its own shadow
   builder_.Add(top + edge, place.along, out, look, -kUp);
   if (!random->Chance(0.6)) return;
-  const Eigen::Vector3d slope = 0.5 * place.depth * (place.inwards + random->Uniform(0.5, 0.9) * kUp) - out;
+  const Eigen::Vector3d gable = 0.5 * place.depth * random->Uniform(0.5, 0.9) * kUp;
+  for (const double end : {0.0, 1.0}) {
+    builder_.Add(top + end * place.along + gable, place.depth * place.inwards, -gable, builder_.Whole(gable_, tone),
+                 (2.0 * end - 1.0) * place.along);
+  }
+  const Eigen::Vector3d slope = 0.5 * place.depth * place.inwards + gable - out;
   look.texture = roof_;
   look.texels = {place.along.norm() * 32.0, -slope.norm() * 32.0};
   look.tone = tone;
@@ -143,22 +149,19 @@ class FacadeRows {
     double open_owed = 0.0;  // keeps the share even over the length
     for (double s = plan_.begin(); s < plan_.end() - 25.0;) {
       const int axes = 3 + random->Index(5);
-      const double next = s + axes * HouseFactory::kAxisWidth;
-      open_owed += (1.0 - share_) * (next - s);
-      const bool open = open_owed > (0.5 + random->Uniform()) * (next - s) || share_ <= 0.0;
-      if (open) open_owed -= next - s;
-      if (!plan_.IsClearOfCrossings(s, next, plan_.pavement() + 0.5)) {
+      const double width = axes * HouseFactory::kAxisWidth;
+      if (!plan_.IsClearOfCrossings(s, s + width, plan_.pavement() + 0.5)) {
         s += 1.0;
-        if (open) open_owed += next - s + 1.0;
-        open_owed -= (1.0 - share_) * (next - s + 1.0);
         continue;
       }
-      if (!open) {
-        AddHouse(s, next, side, axes, random);
+      open_owed += (1.0 - share_) * width;
+      if (share_ <= 0.0 || open_owed > (0.5 + random->Uniform()) * width) {
+        AddHedge(s, s + width, side, random);
+        open_owed -= width;
       } else {
-        AddHedge(s, next, side, random);
+        AddHouse(s, s + width, side, axes, random);
       }
-      s = next;
+      s += width;
     }
   }
 

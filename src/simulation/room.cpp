@@ -28,22 +28,24 @@ void AddWall(SceneBuilder* builder, int axis, double side, int texture, double t
                2.0 * kHalf[v_axis] * Eigen::Vector3d::Unit(v_axis), look, -side * Eigen::Vector3d::Unit(axis));
 }
 
-// Posters on the four upright walls, side by side.
+// Two rows of posters on the four upright walls.
 void AddPosters(SceneBuilder* builder, const std::vector<int>& posters, Random* random) {
   for (const int axis : {0, 2}) {
     const int u_axis = 2 - axis;
     for (const double side : {-1.0, 1.0}) {
-      for (double u = -kHalf[u_axis] + 0.1; u + 1.1 < kHalf[u_axis];) {
-        const double width = random->Uniform(0.6, 1.1);
-        const double height = random->Uniform(0.6, 1.3);
-        Eigen::Vector3d origin;
-        origin[axis] = side * (kHalf[axis] - 0.01);
-        origin[u_axis] = u;
-        origin.y() = random->Uniform(-1.3, -0.2);
-        builder->Add(origin, width * Eigen::Vector3d::Unit(u_axis), height * Eigen::Vector3d::UnitY(),
-                     builder->Whole(posters[random->Index(static_cast<int>(posters.size()))]),
-                     -side * Eigen::Vector3d::Unit(axis));
-        u += width + random->Uniform(0.05, 0.3);
+      for (const double top : {-1.45, -0.3}) {
+        for (double u = -kHalf[u_axis] + 0.05; u + 1.1 < kHalf[u_axis];) {
+          const double width = random->Uniform(0.6, 1.1);
+          Eigen::Vector3d origin;
+          origin[axis] = side * (kHalf[axis] - 0.01);
+          origin[u_axis] = u;
+          origin.y() = top + random->Uniform(0.0, 0.1);
+          builder->Add(origin, width * Eigen::Vector3d::Unit(u_axis),
+                       random->Uniform(0.6, 1.0) * Eigen::Vector3d::UnitY(),
+                       builder->Whole(posters[random->Index(static_cast<int>(posters.size()))]),
+                       -side * Eigen::Vector3d::Unit(axis));
+          u += width + random->Uniform(0.02, 0.2);
+        }
       }
     }
   }

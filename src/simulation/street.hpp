@@ -100,8 +100,8 @@ class HouseFactory {
   /// Width of a front of so many window axes.
   static constexpr double kAxisWidth = 3.1;
   struct Place {
-    Eigen::Vector3d corner;   ///< left end of the front's foot, seen from the road
-    Eigen::Vector3d along;    ///< to its right end, m
+    Eigen::Vector3d corner;   ///< one end of the front's foot
+    Eigen::Vector3d along;    ///< to its other end, m
     Eigen::Vector3d inwards;  ///< unit vector away from the road
     double depth = 8.0;
     int axes = 3;
@@ -118,6 +118,7 @@ class HouseFactory {
   bool night_;
   std::vector<int> uppers_, grounds_, walls_, signs_;
   int roof_ = 0;
+  int gable_ = 0;
   int plain_ = 0;
 };
 

@@ -1,4 +1,5 @@
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -56,7 +57,9 @@ void AddTrees(const StreetTask& task) {
     const double size = random.Uniform(3.0, 4.4);
     const double trunk = random.Uniform(2.4, 3.2);
     const double angle = random.Uniform(0.0, std::numbers::pi);
-    const Eigen::Vector3d foot = plan.At(s, plan.kerb(side) + side * 0.8, kKerbHeight);
+    // Its crown keeps away from the camera.
+    const double lateral = side * std::max(side * plan.kerb(side) + 0.8, 1.2 + 0.6 * size);
+    const Eigen::Vector3d foot = plan.At(s, lateral, kKerbHeight);
     if (!plan.IsClearOfCrossings(s, s, 1.0)) continue;
     AddStem(&task.builder, foot, trunk + 0.4, 0.32, angle, task.builder.Whole(bark));
     AddCrown(&task.builder, foot + (trunk + 0.42 * size) * kUp, size, crowns[random.Index(2)], &random);

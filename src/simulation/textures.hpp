@@ -35,6 +35,8 @@ Texture PaintUpperFloors(Random& random);
 Texture PaintGroundFloor(Random& random);
 /// A wall without windows, 512 x 512.
 Texture PaintWall(Random& random);
+/// A triangle of it on its base with holes beside it, 128 x 64.
+Texture PaintGable(Random& random);
 /// 256 x 256 texels of about 3 cm.
 Texture PaintRoof(Random& random);
 
@@ -50,8 +52,8 @@ Texture PaintFence(Random& random);
 /// screen at 130, that of the rear window at `rear` (420 to 500, saloon to estate); the roof at v = 0, the bonnet at
 /// 110.
 Texture PaintCarSide(double rear);
-/// Its end with number plate and lamps, 256 x 128, without windows.
-Texture PaintCarEnd(Random& random);
+/// Its end with number plate and lamps, 256 x 128, without windows; the rear's lamps are dark.
+Texture PaintCarEnd(Random& random, bool front);
 /// Its roof and bonnet.
 Texture PaintCarPaint(Random& random);
 Texture PaintCarGlass(Random& random);

@@ -13,8 +13,8 @@ constexpr int kHeight = kFacadeFloors * kFacadeCell;
 int Between(Random& random, int low, int high) { return low + random.Index(high - low + 1); }
 
 void PaintBricks(Random& random, Painter* painter, double reflectance) {
-  constexpr int kBrickWidth = 16;
-  constexpr int kBrickHeight = 8;
+  constexpr int kBrickWidth = 8;
+  constexpr int kBrickHeight = 4;
   for (int row = 0; row < painter->height() / kBrickHeight; ++row) {
     for (int column = 0; column < painter->width() / kBrickWidth; ++column) {
       painter->Rectangle(column * kBrickWidth + (row % 2) * kBrickWidth / 2, row * kBrickHeight, kBrickWidth - 1,
@@ -195,6 +195,15 @@ Texture PaintGroundFloor(Random& random) {
 
 Texture PaintWall(Random& random) {
   Painter painter = Wall(random, 512, 512);
+  return painter.Finish();
+}
+
+Texture PaintGable(Random& random) {
+  Painter painter = Wall(random, 128, 64);
+  for (int y = 0; y < 64; ++y) {
+    painter.Hole(0, y, 63 - y, 1);
+    painter.Hole(65 + y, y, 63 - y, 1);
+  }
   return painter.Finish();
 }
 

@@ -52,14 +52,14 @@ Texture PaintCarSide(double rear) {
   return painter.Finish();
 }
 
-Texture PaintCarEnd(Random& random) {
+Texture PaintCarEnd(Random& random, bool front) {
   Painter painter(256, 128, kBodyPaint);
   painter.Rectangle(0, 96, 256, 32, 0.15);
-  painter.Rectangle(60, 34, 136, 26, random.Chance(0.5) ? 0.1 : 0.55);
+  if (front) painter.Rectangle(60, 34, 136, 26, random.Chance(0.5) ? 0.1 : 0.55);
   painter.Rectangle(98, 66, 60, 18, 0.85);
   painter.Lettering(random, 101, 69, 54, 12, 0.08);
   for (const int x : {8, 208}) {
-    painter.Rectangle(x, 24, 40, 26, 0.88);
+    painter.Rectangle(x, 24, 40, 26, front ? 0.88 : 0.22);
     painter.Outline(x, 24, 40, 26, 3, 0.15);
   }
   painter.Rectangle(0, 62, 256, 2, 0.3);

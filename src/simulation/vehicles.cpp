@@ -24,7 +24,7 @@ class CarFactory {
  public:
   CarFactory(SceneBuilder* builder, bool night, Random* random) : builder_(*builder), night_(night) {
     for (std::size_t i = 0; i < sides_.size(); ++i) sides_[i] = builder_.Add(PaintCarSide(kRears[i]));
-    for (int& end : ends_) end = builder_.Add(PaintCarEnd(*random));
+    for (const bool front : {false, true}) ends_[front ? 1 : 0] = builder_.Add(PaintCarEnd(*random, front));
     paint_ = builder_.Add(PaintCarPaint(*random));
     glass_ = builder_.Add(PaintCarGlass(*random));
     shadow_ = builder_.Add(PaintCarShadow());
@@ -42,7 +42,7 @@ class CarFactory {
           {side, 0.0, 0.0});
     }
     for (const double end : {-1.0, 1.0}) {
-      Add({-0.5 * kWidth, -kBonnet, end * front}, {kWidth, 0.0, 0.0}, {0.0, 0.65, 0.0}, ends_[random->Index(2)], tone_,
+      Add({-0.5 * kWidth, -kBonnet, end * front}, {kWidth, 0.0, 0.0}, {0.0, 0.65, 0.0}, ends_[end > 0.0 ? 1 : 0], tone_,
           {0.0, 0.0, end});
     }
     AddTop(kRears[shape]);
@@ -98,7 +98,7 @@ class CarFactory {
   SceneBuilder& builder_;
   bool night_;
   std::array<int, 3> sides_;
-  std::array<int, 2> ends_;
+  std::array<int, 2> ends_;  // rear, front
   int paint_ = 0;
   int glass_ = 0;
   int shadow_ = 0;
