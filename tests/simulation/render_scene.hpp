@@ -1,0 +1,133 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "evo/geometry/camera.hpp"
+#include "evo/simulation/random.hpp"
+#include "evo/simulation/renderer.hpp"
+
+namespace evo {
+
+inline Camera Davis346() {  // MVSEC outdoor_day, left
+  return Camera({Distortion::kEquidistant,
+                 346,
+                 260,
+                 223.9940010790056,
+                 223.61783486959376,
+                 170.7684322973841,
+                 128.18711828338436,
+                 {-0.033904378348448685, -0.01537260902537579, -0.022284741346941413, 0.0069204143687187645, 0}});
+}
+
+inline Camera Davis240() {  // UZH boxes_6dof
+  return Camera({Distortion::kRadTan,
+                 240,
+                 180,
+                 199.092366542,
+                 198.82882047,
+                 132.192071378,
+                 110.712660011,
+                 {-0.368436311798, 0.150947243557, -0.000296130534385, -0.000759431726241, 0.0}});
+}
+
+inline Texture Plain(float reflectance, float coverage = 1.0F) {
+  return Texture(1, 1, {{.reflectance = reflectance, .coverage = coverage}});
+}
+
+/// A scene of the static world alone with one grey texture.
+inline Scene Empty() {
+  Scene scene;
+  scene.textures.push_back(Plain(0.5F));
+  scene.bodies.resize(1);
+  return scene;
+}
+
+/// A rectangle that faces the camera at depth z.
+inline Surface Facing(double x0, double x1, double y0, double y1, double z, int texture = 0) {
+  Surface surface;
+  surface.origin = {x0, y0, z};
+  surface.edge_u = {x1 - x0, 0, 0};
+  surface.edge_v = {0, y1 - y0, 0};
+  surface.texture = texture;
+  return surface;
+}
+
+inline Eigen::Vector3d RandomVector(Random* random, double size) {
+  const double x = random->Uniform(-size, size);
+  const double y = random->Uniform(-size, size);
+  return {x, y, random->Uniform(-size, size)};
+}
+
+/// Parallelograms of all sizes all round the camera, a third of them on two moving bodies.
+inline Scene RandomScene(int surfaces, std::uint64_t seed) {
+  Random random(seed);
+  Scene scene = Empty();
+  for (int i = 1; i <= 2; ++i) {
+    const Eigen::Vector3d start = RandomVector(&random, 10.0);
+    const Eigen::Vector3d speed = RandomVector(&random, 5.0);
+    const Eigen::Vector3d spin = RandomVector(&random, 1.0);
+    scene.bodies.push_back({.T_world_body = [=](TimeNs t) {
+      return SE3(so3::Exp(spin * ToSeconds(t)), start + speed * ToSeconds(t));
+    }});
+  }
+  for (int i = 0; i < surfaces; ++i) {
+    Surface surface;
+    surface.origin = RandomVector(&random, 20.0);
+    const double size = std::exp(random.Uniform(-1.5, 2.5));
+    surface.edge_u = RandomVector(&random, size);
+    surface.edge_v = RandomVector(&random, size);
+    surface.body = random.Chance(0.33) ? 1 + random.Index(2) : 0;
+    if (surface.body > 0) surface.origin *= 0.3;
+    scene.surfaces.push_back(surface);
+  }
+  return scene;
+}
+
+inline Renderer::Visible All(const Scene& scene) {
+  Renderer::Visible all;
+  for (int i = 0; i < static_cast<int>(scene.surfaces.size()); ++i) all.surfaces.push_back(i);
+  return all;
+}
+
+inline Tile Whole(const Camera& camera) { return {0, 0, camera.width(), camera.height()}; }
+
+inline std::vector<float> RenderAll(const Scene& scene, const Camera& camera, int samples, TimeNs t = 0,
+                                    const SE3& T_world_cam = SE3()) {
+  std::vector<float> image(static_cast<std::size_t>(camera.width()) * static_cast<std::size_t>(camera.height()));
+  Renderer(scene, camera, samples).Render(Whole(camera), All(scene), t, T_world_cam, image);
+  return image;
+}
+
+inline std::vector<float> DepthOfAll(const Scene& scene, const Camera& camera, TimeNs t = 0,
+                                     const SE3& T_world_cam = SE3()) {
+  std::vector<float> image(static_cast<std::size_t>(camera.width()) * static_cast<std::size_t>(camera.height()));
+  Renderer(scene, camera, 1).Depth(Whole(camera), All(scene), t, T_world_cam, image);
+  return image;
+}
+
+/// What the ray of a pixel's centre hits first, found one surface after the other in double precision.
+struct Hit {
+  int surface = -1;
+  double depth = 0.0;
+  double margin = 1.0;  ///< of a, b from the edges of the surfaces met: hits closer to an edge may differ by rounding
+};
+inline Hit CastRay(const Scene& scene, const Eigen::Vector2d& ray, TimeNs t, const SE3& T_world_cam) {
+  Hit hit;
+  for (int i = 0; i < static_cast<int>(scene.surfaces.size()); ++i) {
+    const Surface& s = scene.surfaces[i];
+    const SE3 T_cam_body = T_world_cam.Inverse() * BodyPose(scene, s.body, t);
+    Eigen::Matrix3d system;
+    system << ray.homogeneous(), -(T_cam_body.rotation() * s.edge_u), -(T_cam_body.rotation() * s.edge_v);
+    const Eigen::Vector3d z_a_b = system.inverse() * (T_cam_body * s.origin);
+    const double inside = std::min({z_a_b.y(), z_a_b.z(), 1.0 - z_a_b.y(), 1.0 - z_a_b.z()});
+    if (z_a_b.x() <= 0.0) continue;
+    hit.margin = std::min(hit.margin, std::abs(inside));
+    if (inside < 0.0 || (hit.surface >= 0 && z_a_b.x() >= hit.depth)) continue;
+    hit.surface = i;
+    hit.depth = z_a_b.x();
+  }
+  return hit;
+}
+
+}  // namespace evo
