@@ -36,7 +36,8 @@ Range InverseDepths(const Surface& s, const SurfaceView& view, const SE3& T_cam_
 }
 
 /// Where the point seen along `ray` (on the plane z = 1) at an inverse depth is seen after `motion`, less the ray.
-Vector2d Shift(const Vector2d& ray, double inverse_depth, const Eigen::Matrix3d& rotation, const Vector3d& translation) {
+Vector2d Shift(const Vector2d& ray, double inverse_depth, const Eigen::Matrix3d& rotation,
+               const Vector3d& translation) {
   constexpr double kNearest = 0.1;  // of the former depth: it goes past the camera
   const Vector3d moved = rotation * ray.homogeneous() + inverse_depth * translation;
   return moved.head<2>() / std::max(moved.z(), kNearest) - ray;

@@ -38,9 +38,10 @@ Lights::OnSurface Lights::For(const SurfaceView& view, const RayBox& rays) const
   for (const LampInCamera& lamp : lamps_) {
     const float height = view.distance - view.normal.dot(lamp.position);  // on the side that the camera sees
     if (height <= 0.0F || Square(height) >= lamp.range2) continue;
-    const float gap2 = Gap2(lamp.position.x(), std::min(near * rays.x0, far * rays.x0), std::max(near * rays.x1, far * rays.x1)) +
-                       Gap2(lamp.position.y(), std::min(near * rays.y0, far * rays.y0), std::max(near * rays.y1, far * rays.y1)) +
-                       Gap2(lamp.position.z(), near, far);
+    const float gap2 =
+        Gap2(lamp.position.x(), std::min(near * rays.x0, far * rays.x0), std::max(near * rays.x1, far * rays.x1)) +
+        Gap2(lamp.position.y(), std::min(near * rays.y0, far * rays.y0), std::max(near * rays.y1, far * rays.y1)) +
+        Gap2(lamp.position.z(), near, far);
     if (gap2 < lamp.range2) shining.lamps.push_back({lamp.position, lamp.intensity * height, 1.0F / lamp.range2});
   }
   return shining;

@@ -21,7 +21,7 @@ class Lights {
   struct OnSurface {
     struct Shine {
       Eigen::Vector3f position;
-      float strength = 0.0F;      ///< intensity times height over the surface
+      float strength = 0.0F;  ///< intensity times height over the surface
       float inverse_range2 = 0.0F;
     };
     std::vector<Shine> lamps;

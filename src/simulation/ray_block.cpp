@@ -60,7 +60,8 @@ std::vector<const SurfaceView*> Cull(const std::vector<SurfaceView>& views, cons
       cover_w = w;
     }
   }
-  if (cover) std::erase_if(kept, [&](const SurfaceView* v) { return v != cover && (v->w - cover->w).Max(rays) < 0.0F; });
+  if (cover)
+    std::erase_if(kept, [&](const SurfaceView* v) { return v != cover && (v->w - cover->w).Max(rays) < 0.0F; });
   return kept;
 }
 

@@ -67,9 +67,8 @@ inline Scene RandomScene(int surfaces, std::uint64_t seed) {
     const Eigen::Vector3d start = RandomVector(&random, 10.0);
     const Eigen::Vector3d speed = RandomVector(&random, 5.0);
     const Eigen::Vector3d spin = RandomVector(&random, 1.0);
-    scene.bodies.push_back({.T_world_body = [=](TimeNs t) {
-      return SE3(so3::Exp(spin * ToSeconds(t)), start + speed * ToSeconds(t));
-    }});
+    scene.bodies.push_back(
+        {.T_world_body = [=](TimeNs t) { return SE3(so3::Exp(spin * ToSeconds(t)), start + speed * ToSeconds(t)); }});
   }
   for (int i = 0; i < surfaces; ++i) {
     Surface surface;

@@ -109,7 +109,8 @@ TEST_P(RendererOf, CornersAreWhereTheCameraProjectsThem) {
         error_x += (EdgeAt(along_row, 0.5, 0.0) + static_cast<int>(near.x()) - 10 - edge_x) / 9.0;
         error_y += (EdgeAt(along_column, 0.5, 0.0) + static_cast<int>(near.y()) - 10 - edge_y) / 9.0;
       }
-      EXPECT_LT(std::hypot(error_x, error_y), samples == 2 ? 0.1 : 0.03) << near.transpose() << " " << samples;
+      // Along an edge that follows the pixels 2 x 2 rays can place it only to a quarter of a pixel.
+      EXPECT_LT(std::hypot(error_x, error_y), samples == 2 ? 0.25 : 0.03) << near.transpose() << " " << samples;
       EXPECT_LT((lens.Project(corner) - near).norm(), 1e-6);
     }
   }

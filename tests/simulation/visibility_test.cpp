@@ -37,9 +37,9 @@ TEST(FindVisible, NeverMissesASurface) {
     const Scene scene = RandomScene(200, 100 + round);
     const Renderer renderer(scene, lens, 2);
     const Drive drive = RandomDrive(&random, round < 6 ? 0.005 : 0.1);
-    for (const Tile& tile : {Tile{0, 0, 16, 16}, Tile{160, 120, 16, 16}, Tile{330, 96, 16, 30}, Tile{90, 200, 40, 60}}) {
-      const auto visible =
-          renderer.FindVisible(tile, drive.from, drive.to, drive.pose_from, drive.pose_to).surfaces;
+    for (const Tile& tile :
+         {Tile{0, 0, 16, 16}, Tile{160, 120, 16, 16}, Tile{330, 96, 16, 30}, Tile{90, 200, 40, 60}}) {
+      const auto visible = renderer.FindVisible(tile, drive.from, drive.to, drive.pose_from, drive.pose_to).surfaces;
       EXPECT_TRUE(std::is_sorted(visible.begin(), visible.end()));
       named += visible.size();
       for (int i = 0; i < 150; ++i) {
@@ -69,8 +69,7 @@ TEST(ImageSpeed, IsAnUpperBound) {
     const Drive drive = RandomDrive(&random, 0.005);
     for (const Tile& tile : CutIntoTiles(346, 260, 32)) {
       const auto visible = renderer.FindVisible(tile, drive.from, drive.to, drive.pose_from, drive.pose_to);
-      const double bound =
-          renderer.ImageSpeed(tile, visible, drive.from, drive.to, drive.pose_from, drive.pose_to);
+      const double bound = renderer.ImageSpeed(tile, visible, drive.from, drive.to, drive.pose_from, drive.pose_to);
       double most = 0.0;
       for (int i = 0; i < 60; ++i) {
         const Vector2d pixel(tile.x0 + random.Index(tile.width), tile.y0 + random.Index(tile.height));
