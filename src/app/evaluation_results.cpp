@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "app/output_folder.hpp"
+#include "evo/core/output_file.hpp"
 #include "evo/report/figures.hpp"
 #include "evo/report/gnuplot.hpp"
 #include "evo/report/latex_tables.hpp"
@@ -75,7 +76,7 @@ void WriteEvaluationResults(const std::filesystem::path& folder, const std::stri
   WriteCsv(folder / "summary.csv", rows);
   WriteJson(folder / "summary.json", rows);
   WriteCsv(folder / "metrics.csv", MetricRows(sequence, evaluation), Digits::kAll);
-  WriteLatex(folder / "tables" / "errors.tex", ErrorTable(sequence, evaluation));
+  WriteText(folder / "tables" / "errors.tex", ErrorTable(sequence, evaluation));
   for (std::size_t i = 0; i < evaluation.alignments.size(); ++i) {
     const auto& result = evaluation.alignments[i];
     const std::string suffix = Suffix(i, result.alignment);

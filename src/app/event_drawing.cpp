@@ -1,9 +1,9 @@
 #include "app/event_drawing.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "app/output_folder.hpp"
+#include "evo/core/format.hpp"
 #include "evo/report/png.hpp"
 
 namespace evo::app {
@@ -18,12 +18,6 @@ constexpr std::size_t kFrames = 4;
 constexpr int kColumns = 2;
 constexpr int kGap = 2 * kZoom;          // px between the frames of a sheet
 constexpr int kLabelHeight = 8 * kZoom;  // px
-
-std::string Format(const char* format, double seconds) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, seconds);
-  return text;
-}
 
 Canvas DrawFrame(const TrackingView& view) {
   EventColumns events;

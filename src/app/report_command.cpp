@@ -21,12 +21,6 @@ struct ReportArguments {
   bool force = false;
 };
 
-void Write(const std::filesystem::path& path, const std::string& text) {
-  OutputFile file(path);
-  file.stream() << text;
-  file.Commit();
-}
-
 void RunReport(const ReportArguments& arguments) {
   SetUpLogging(0);
   CheckOutputFolder(arguments.out, {"runs.csv", "runs.tex", "index.html"}, arguments.force);
@@ -35,8 +29,8 @@ void RunReport(const ReportArguments& arguments) {
   const CsvTable table = MergeRuns(runs);
   const std::string page = RunsPage(arguments.title, runs, table);
   WriteCsv(arguments.out / "runs.csv", table);
-  Write(arguments.out / "runs.tex", RunsLatex(table, alignment));
-  Write(arguments.out / "index.html", page);
+  WriteText(arguments.out / "runs.tex", RunsLatex(table, alignment));
+  WriteText(arguments.out / "index.html", page);
   const auto failed = std::ranges::count_if(runs, [](const RunFolder& run) { return !run.failure.empty(); });
   std::cout << "runs       " << runs.size() << ", of which " << failed << " failed\n"
             << "results    " << (arguments.out / "index.html").string() << '\n';

@@ -1,9 +1,9 @@
 #include "app/sequence_output.hpp"
 
-#include <cstdio>
 #include <optional>
-#include <regex>
 
+#include "app/output_folder.hpp"
+#include "evo/core/format.hpp"
 #include "evo/io/calibration_io.hpp"
 #include "evo/io/mvsec_writer.hpp"
 #include "evo/io/trajectory_io.hpp"
@@ -60,8 +60,7 @@ class UzhOutput : public SequenceOutput {
 
   void OnEvents(const EventColumns& events) override { events_.Append(events); }
   void OnImage(TimeNs t, const GreyImage& image, std::size_t) override {
-    char name[48];
-    std::snprintf(name, sizeof name, "images/frame_%08zu.png", image_count_++);
+    const std::string name = Format("images/frame_%08zu.png", image_count_++);
     WritePng(folder_ / name, image);
     images_.stream() << FormatTime(t) << ' ' << name << '\n';
   }
@@ -131,15 +130,9 @@ std::unique_ptr<SequenceOutput> MakeSequenceOutput(SequenceFormat format, const 
 }
 
 void RemoveSequenceImages(const fs::path& folder) {
-  static const std::regex kImage(R"(frame_(\d{8}|\d{4,}\.\d{3}s)\.png)");
-  std::error_code ignored;
-  std::vector<fs::path> images;
   for (const char* const subfolder : {"images", "preview"}) {
-    for (const auto& entry : fs::directory_iterator(folder / subfolder, ignored)) {
-      if (std::regex_match(entry.path().filename().string(), kImage)) images.push_back(entry.path());
-    }
+    RemoveResults(folder / subfolder, R"(frame_(\d{8}|\d{4,}\.\d{3}s)\.png)");
   }
-  for (const auto& image : images) fs::remove(image, ignored);
 }
 
 void PreviewOutput::OnEvents(const EventColumns& events) {
@@ -155,12 +148,10 @@ void PreviewOutput::OnImage(TimeNs t, const GreyImage& image, std::size_t events
   output_->OnImage(t, image, events_before);
   if (t < next_) return;
   next_ += every_;
-  char name[48];
-  std::snprintf(name, sizeof name, "frame_%08.3fs.png", ToSeconds(t));
   const EventColumns drawn = Cut(recent_, t - kDrawnEvents, t);
   const std::vector<Canvas> panels{DrawImage(image),
                                    DrawEvents(drawn, image.width, image.height, PolarityColors::kRedBlue, kZoom)};
-  WritePng(folder_ / name, Sheet(panels, 2, 2 * kZoom));
+  WritePng(folder_ / Format("frame_%08.3fs.png", ToSeconds(t)), Sheet(panels, 2, 2 * kZoom));
 }
 
 }  // namespace evo::app

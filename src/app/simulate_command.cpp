@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <iostream>
 #include <limits>
 #include <memory>
@@ -12,6 +11,7 @@
 #include "app/run_record.hpp"
 #include "app/sequence_output.hpp"
 #include "evo/core/error.hpp"
+#include "evo/core/format.hpp"
 #include "evo/simulation/scene_options.hpp"
 
 namespace evo::app {
@@ -51,21 +51,6 @@ TimeNs Duration(const SimulateArguments& arguments, const SimulatedRun& run) {
   throw Error(ErrorKind::kUsage, "--duration: the motion ends after " + FormatTime(run.duration) +
                                      " s; give less, or raise duration_s of "
                                      "motion.vehicle, motion.handheld or motion.slider");
-}
-
-template <typename... Values>
-std::string Format(const char* format, Values... values) {
-  char text[256];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
-
-double PathLength(const Trajectory& poses) {
-  double length = 0.0;
-  for (std::size_t i = 1; i < poses.size(); ++i) {
-    length += (poses[i].T_world_cam.translation() - poses[i - 1].T_world_cam.translation()).norm();
-  }
-  return length;
 }
 
 void PrintSummary(const std::string& name, const Camera& camera, const Trajectory& poses,

@@ -2,7 +2,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include <cstdio>
 #include <set>
 
 #include "app/error_place.hpp"
@@ -10,6 +9,8 @@
 #include "app/event_drawing.hpp"
 #include "app/output_folder.hpp"
 #include "evo/core/error.hpp"
+#include "evo/core/format.hpp"
+#include "evo/core/output_file.hpp"
 #include "evo/core/progress.hpp"
 #include "evo/io/trajectory_io.hpp"
 #include "evo/odometry/map_writer.hpp"
@@ -20,13 +21,6 @@
 namespace evo::app {
 
 namespace {
-
-template <typename... Values>
-std::string Format(const char* format, Values... values) {
-  char line[160];
-  std::snprintf(line, sizeof line, format, values...);
-  return line;
-}
 
 /// Where the interval ends, also if it was asked for beyond the end of the recording.
 TimeNs EndOfInterval(const Recording& recording) {
@@ -122,8 +116,8 @@ TrackingOutcome RunTrackingStage(StageContext* context, Recording* recording) {
     WriteTracks(context->options.out / "tracks.txt", outcome.result.tracks,
                 {"pixels of the raw sensor, each at the very instant of its stamp"});
     WriteLifetimes(context->options.out / "lifetime.csv", outcome.lifetimes);
-    WriteLatex(context->options.out / "tables" / "lifetime.tex",
-               LifetimeTable(SequenceName(recording->events), outcome.lifetimes));
+    WriteText(context->options.out / "tables" / "lifetime.tex",
+              LifetimeTable(SequenceName(recording->events), outcome.lifetimes));
     if (!context->options.no_plots) DrawTrackFigures(context->options.out / "plots", outcome);
   });
   const auto& frames = outcome.result.frames;
@@ -170,14 +164,11 @@ OdometryResult RunOdometryStage(StageContext* context, const Tracks& tracks, con
 }
 
 std::string FormatTracking(const TrackingOutcome& outcome) {
-  const auto& lifetimes = outcome.lifetimes;
   const auto frames = std::max<std::size_t>(1, outcome.result.frames.size());
   return Format("tracking   %zu events, %zu event frames, %.0f live features\n", outcome.result.events,
                 outcome.result.frames.size(),
                 static_cast<double>(outcome.result.tracks.size()) / static_cast<double>(frames)) +
-         Format("lifetime   %.1f +- %.1f frames, %.2f +- %.2f s (%lld tracks)\n", lifetimes.in_frames.mean,
-                lifetimes.in_frames.standard_deviation, lifetimes.in_seconds.mean,
-                lifetimes.in_seconds.standard_deviation, static_cast<long long>(lifetimes.tracks));
+         FormatLifetimes(outcome.lifetimes);
 }
 
 std::string FormatOdometry(const OdometryResult& result) {

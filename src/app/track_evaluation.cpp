@@ -1,12 +1,13 @@
 #include "app/track_evaluation.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "app/error_place.hpp"
 #include "app/output_folder.hpp"
 #include "app/recording.hpp"
 #include "evo/core/error.hpp"
+#include "evo/core/format.hpp"
+#include "evo/core/output_file.hpp"
 #include "evo/odometry/resampling.hpp"
 #include "evo/report/figures.hpp"
 #include "evo/report/latex_tables.hpp"
@@ -138,7 +139,7 @@ void WriteTrackEvaluation(const std::filesystem::path& folder, const std::string
   WriteTrackQuality(folder / "track_quality.csv", evaluation.accuracy);
   WriteTrackErrors(folder / "track_errors.csv", evaluation.accuracy);
   WriteLifetimes(folder / "lifetime.csv", evaluation.lifetimes);
-  WriteLatex(folder / "tables" / "lifetime.tex", LifetimeTable(sequence, evaluation.lifetimes));
+  WriteText(folder / "tables" / "lifetime.tex", LifetimeTable(sequence, evaluation.lifetimes));
   if (!with_plots) return;
   Gnuplot gnuplot(folder / "plots");
   gnuplot.Draw("track_error", TrackErrorFigure("track_error", evaluation.accuracy));
@@ -147,17 +148,9 @@ void WriteTrackEvaluation(const std::filesystem::path& folder, const std::string
 }
 
 std::string FormatTrackEvaluation(const TrackEvaluation& evaluation) {
-  const auto& lifetimes = evaluation.lifetimes;
-  char line[200];
-  std::snprintf(line, sizeof line, "lifetime   %.1f +- %.1f frames, %.2f +- %.2f s (%lld tracks",
-                lifetimes.in_frames.mean, lifetimes.in_frames.standard_deviation, lifetimes.in_seconds.mean,
-                lifetimes.in_seconds.standard_deviation, static_cast<long long>(lifetimes.tracks));
-  std::string text = FormatTrackAccuracy(evaluation.accuracy) + line;
-  if (evaluation.made_frames_s) {
-    std::snprintf(line, sizeof line, ", in frames made every %g s", *evaluation.made_frames_s);
-    text += line;
-  }
-  return text + ")\n";
+  const std::string note =
+      evaluation.made_frames_s ? Format(", in frames made every %g s", *evaluation.made_frames_s) : "";
+  return FormatTrackAccuracy(evaluation.accuracy) + FormatLifetimes(evaluation.lifetimes, note);
 }
 
 }  // namespace evo::app

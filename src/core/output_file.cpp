@@ -53,4 +53,10 @@ void OutputFile::Commit() {
   pending_.Commit();
 }
 
+void WriteText(const std::filesystem::path& path, const std::string& text) {
+  OutputFile file(path);
+  file.stream() << text;
+  file.Commit();
+}
+
 }  // namespace evo

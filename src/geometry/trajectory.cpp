@@ -15,4 +15,12 @@ std::optional<SE3> PoseAt(const Trajectory& trajectory, TimeNs t, TimeNs max_int
   return Interpolate(before->T_world_cam, after->T_world_cam, ToSeconds(t - before->t) / ToSeconds(interval));
 }
 
+double PathLength(const Trajectory& trajectory) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    length += (trajectory[i].T_world_cam.translation() - trajectory[i - 1].T_world_cam.translation()).norm();
+  }
+  return length;
+}
+
 }  // namespace evo

@@ -64,12 +64,6 @@ std::string Script(const std::string& name, const Figure& figure) {
   return script.str();
 }
 
-void WriteText(const fs::path& path, const std::string& text) {
-  OutputFile file(path);
-  file.stream() << text;
-  file.Commit();
-}
-
 std::string ReadText(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};

@@ -6,7 +6,6 @@
 #include <functional>
 #include <limits>
 
-#include "evo/core/output_file.hpp"
 #include "evo/report/latex.hpp"
 
 namespace evo {
@@ -91,12 +90,6 @@ std::string ErrorTable(const std::string& sequence, const Evaluation& evaluation
       Begin(caption, "errors-" + Label(sequence), "lrrr") + "    Item & Longitudinal & Lateral & Planar \\\\\n";
   for (const auto& result : evaluation.alignments) table += AlignmentBlock(evaluation, result);
   return table + End();
-}
-
-void WriteLatex(const std::filesystem::path& path, const std::string& table) {
-  OutputFile file(path);
-  file.stream() << table;
-  file.Commit();
 }
 
 }  // namespace evo

@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "evo/core/format.hpp"
 #include "evo/core/output_file.hpp"
 
 namespace evo {
@@ -243,6 +244,13 @@ std::string FormatSummary(const Evaluation& evaluation) {
          Short(Find(result.rpe.front().relations, PoseRelation::kTranslation).rmse, 4)});
   }
   return table;
+}
+
+std::string FormatLifetimes(const LifetimeStatistics& statistics, const std::string& note) {
+  return Format("lifetime   %.1f +- %.1f frames, %.2f +- %.2f s (%lld tracks", statistics.in_frames.mean,
+                statistics.in_frames.standard_deviation, statistics.in_seconds.mean,
+                statistics.in_seconds.standard_deviation, static_cast<long long>(statistics.tracks)) +
+         note + ")\n";
 }
 
 }  // namespace evo

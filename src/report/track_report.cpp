@@ -1,9 +1,9 @@
 #include "evo/report/track_report.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
+#include "evo/core/format.hpp"
 #include "evo/report/tables.hpp"
 
 namespace evo {
@@ -13,13 +13,6 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 using Value = std::variant<std::string, std::int64_t, double>;
-
-template <typename... Values>
-std::string Print(const char* format, Values... values) {
-  char text[200];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 const char* VerdictName(TrackVerdict verdict) {
   switch (verdict) {
@@ -96,7 +89,7 @@ TableRow ErrorRow(const TrackErrors& track, const std::vector<double>& threshold
                {"max_error_px", error.max}};
   for (std::size_t i = 0; i < thresholds_px.size(); ++i) {
     const double age = track.judged() ? track.feature_ages_s[i] : kNone;
-    const std::string threshold = Print("%gpx", thresholds_px[i]);
+    const std::string threshold = Format("%gpx", thresholds_px[i]);
     row.emplace_back("age_" + threshold + "_s", age);
     row.emplace_back("outlier_" + threshold,
                      track.judged() ? Value(std::int64_t{age > 0.0 ? 0 : 1}) : Value(std::string()));
@@ -131,26 +124,26 @@ void WriteTrackErrors(const std::filesystem::path& path, const TrackAccuracy& ac
 
 std::string FormatTrackAccuracy(const TrackAccuracy& accuracy) {
   std::string text =
-      Print("tracks     %lld of %zu judged, truth: %s", static_cast<long long>(Count(accuracy, TrackVerdict::kJudged)),
-            accuracy.tracks.size(), accuracy.truth.c_str());
+      Format("tracks     %lld of %zu judged, truth: %s", static_cast<long long>(Count(accuracy, TrackVerdict::kJudged)),
+             accuracy.tracks.size(), accuracy.truth.c_str());
   for (const auto& [verdict, name] : {std::pair{TrackVerdict::kTooShort, "too short"},
                                       {TrackVerdict::kNoTruth, "without truth"},
                                       {TrackVerdict::kNoDepth, "without depth"},
                                       {TrackVerdict::kNotTriangulated, "not triangulated"}}) {
     const auto count = static_cast<long long>(Count(accuracy, verdict));
-    if (count > 0) text += Print("; %lld %s", count, name);
+    if (count > 0) text += Format("; %lld %s", count, name);
   }
   text +=
       "\nthreshold   error: median   a track     mean     95 %   age: mean   median  outliers  expected age\n"
       "       px           px        px       px       px          s        s         %         s      %\n";
   for (const auto& threshold : accuracy.thresholds) {
     const auto& age = threshold.feature_age_s;
-    const std::string name = std::isfinite(threshold.threshold_px) ? Print("%g", threshold.threshold_px) : "none";
+    const std::string name = std::isfinite(threshold.threshold_px) ? Format("%g", threshold.threshold_px) : "none";
     const double normalized = 100.0 * threshold.expected_age_normalized;
-    text += Print("%9s %12.3f %9.3f %8.3f %8.3f %11.3f %8.3f %9.2f %9.3f %6s\n", name.c_str(),
-                  threshold.error_px.median, threshold.track_error_median_px, threshold.error_px.mean,
-                  threshold.error_p95_px, age.mean, age.median, 100.0 * threshold.outlier_share,
-                  threshold.expected_age_s, std::isfinite(normalized) ? Print("%.1f", normalized).c_str() : "-");
+    text += Format("%9s %12.3f %9.3f %8.3f %8.3f %11.3f %8.3f %9.2f %9.3f %6s\n", name.c_str(),
+                   threshold.error_px.median, threshold.track_error_median_px, threshold.error_px.mean,
+                   threshold.error_p95_px, age.mean, age.median, 100.0 * threshold.outlier_share,
+                   threshold.expected_age_s, std::isfinite(normalized) ? Format("%.1f", normalized).c_str() : "-");
   }
   return text;
 }

@@ -52,14 +52,6 @@ Trajectory ReadMotionFile(const SceneOptions& options) {
   return trajectory;
 }
 
-double PathLength(const Trajectory& trajectory) {
-  double length = 0.0;
-  for (std::size_t i = 1; i < trajectory.size(); ++i) {
-    length += (trajectory[i].T_world_cam.translation() - trajectory[i - 1].T_world_cam.translation()).norm();
-  }
-  return length;
-}
-
 /// The motion and how far it leads along a road.
 struct Motion {
   CameraMotion T_world_cam;

@@ -116,6 +116,18 @@ void ExpectEqual(double actual, const std::string& expected, double tolerance, c
   EXPECT_NEAR(actual, value, tolerance * std::max(1.0, std::abs(value))) << place;
 }
 
+/// All of them but the sum of squares, with those of a row.
+void ExpectEqual(const Statistics& statistics, const std::map<std::string, std::string>& row, double tolerance,
+                 const std::string& name) {
+  EXPECT_EQ(statistics.count, std::stoll(row.at("n"))) << name;
+  ExpectEqual(statistics.rmse, row.at("rmse"), tolerance, name + " rmse");
+  ExpectEqual(statistics.mean, row.at("mean"), tolerance, name + " mean");
+  ExpectEqual(statistics.median, row.at("median"), tolerance, name + " median");
+  ExpectEqual(statistics.standard_deviation, row.at("std"), tolerance, name + " std");
+  ExpectEqual(statistics.min, row.at("min"), tolerance, name + " min");
+  ExpectEqual(statistics.max, row.at("max"), tolerance, name + " max");
+}
+
 TEST(EvoReference, EveryRowOfItsTable) {
   int rows = 0;
   for (const auto& row : ReadReferenceTable("reference.csv")) {
@@ -123,13 +135,7 @@ TEST(EvoReference, EveryRowOfItsTable) {
     const Question question = ReadCommand(row.at("command"));
     const Statistics statistics = Answer(question);
     const double tolerance = question.kitti ? 1e-6 : 1e-9;
-    EXPECT_EQ(statistics.count, std::stoll(row.at("n"))) << name;
-    ExpectEqual(statistics.rmse, row.at("rmse"), tolerance, name + " rmse");
-    ExpectEqual(statistics.mean, row.at("mean"), tolerance, name + " mean");
-    ExpectEqual(statistics.median, row.at("median"), tolerance, name + " median");
-    ExpectEqual(statistics.standard_deviation, row.at("std"), tolerance, name + " std");
-    ExpectEqual(statistics.min, row.at("min"), tolerance, name + " min");
-    ExpectEqual(statistics.max, row.at("max"), tolerance, name + " max");
+    ExpectEqual(statistics, row, tolerance, name);
     ExpectEqual(statistics.sse, row.at("sse"), tolerance, name + " sse");
     ++rows;
   }
@@ -241,14 +247,7 @@ TEST(RpgReference, AbsoluteErrorsOfEveryAlignment) {
     const auto evaluation = Evaluate(ReadReferenceTrajectory("gt.txt"), ReadReferenceTrajectory(row.at("est") + ".txt"),
                                      std::vector{alignment}, {}, options);
     const Statistics& statistics = evaluation.alignments.front().Ape(relation);
-    EXPECT_EQ(statistics.count, std::stoll(row.at("n"))) << name;
-    const double tolerance = 1e-9;
-    ExpectEqual(statistics.rmse, row.at("rmse"), tolerance, name + " rmse");
-    ExpectEqual(statistics.mean, row.at("mean"), tolerance, name + " mean");
-    ExpectEqual(statistics.median, row.at("median"), tolerance, name + " median");
-    ExpectEqual(statistics.standard_deviation, row.at("std"), tolerance, name + " std");
-    ExpectEqual(statistics.min, row.at("min"), tolerance, name + " min");
-    ExpectEqual(statistics.max, row.at("max"), tolerance, name + " max");
+    ExpectEqual(statistics, row, 1e-9, name);
     ++rows;
   }
   EXPECT_EQ(rows, 42);

@@ -19,5 +19,11 @@ TEST(Trajectory, PosesAreInterpolatedButNotExtrapolatedNorAcrossHoles) {
   EXPECT_NEAR(so3::Log(middle->rotation()).z(), 0.1, 1e-12);
 }
 
+TEST(Trajectory, PathLengthIsSummedFromPoseToPose) {
+  EXPECT_EQ(PathLength({}), 0.0);
+  const SE3 corner({1, 0, 0, 0}, Eigen::Vector3d(3, 0, 4));
+  EXPECT_DOUBLE_EQ(PathLength({{0, SE3()}, {1, corner}, {2, corner}, {3, SE3()}}), 10.0);
+}
+
 }  // namespace
 }  // namespace evo

@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "evo/core/error.hpp"
+#include "evo/core/output_file.hpp"
 #include "fixtures.hpp"
 
 namespace evo {
@@ -88,11 +89,11 @@ TEST_F(LatexTablesTest, LatexTypesetsThem) {
     GTEST_SKIP() << "pdflatex with booktabs is not installed";
   }
   const std::string name = R"(all # $ % & _ { } ~ ^ \ < > | of them)";
-  WriteLatex(folder / "tables" / "errors.tex", ErrorTable(name, SampleEvaluation()));
-  WriteLatex(folder / "tables" / "lifetime.tex", LifetimeTable(name, {}));
-  WriteLatex(folder / "document.tex",
-             "\\documentclass{article}\n\\usepackage{booktabs}\n\\begin{document}\n\\input{tables/lifetime}\n"
-             "\\input{tables/errors}\n\\end{document}\n");
+  WriteText(folder / "tables" / "errors.tex", ErrorTable(name, SampleEvaluation()));
+  WriteText(folder / "tables" / "lifetime.tex", LifetimeTable(name, {}));
+  WriteText(folder / "document.tex",
+            "\\documentclass{article}\n\\usepackage{booktabs}\n\\begin{document}\n\\input{tables/lifetime}\n"
+            "\\input{tables/errors}\n\\end{document}\n");
   const std::string command =
       "cd '" + folder.string() + "' && pdflatex -interaction=nonstopmode -halt-on-error document.tex >log 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0) << ReadFile(folder / "log");
@@ -101,7 +102,7 @@ TEST_F(LatexTablesTest, LatexTypesetsThem) {
 
 TEST_F(LatexTablesTest, CannotWriteIsAnOutputError) {
   std::ofstream(folder / "file") << "x";
-  EXPECT_THROW(WriteLatex(folder / "file" / "errors.tex", ""), Error);
+  EXPECT_THROW(WriteText(folder / "file" / "errors.tex", ""), Error);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <ostream>
+#include <string>
 
 namespace evo {
 
@@ -41,5 +42,8 @@ class OutputFile {
   PendingPath pending_;
   std::ofstream stream_;  // closed before pending_ removes what is left
 };
+
+/// A whole result file in one call.
+void WriteText(const std::filesystem::path& path, const std::string& text);
 
 }  // namespace evo

@@ -20,4 +20,7 @@ using Trajectory = std::vector<StampedPose>;
 /// where the neighbours are more than `max_interval` apart.
 std::optional<SE3> PoseAt(const Trajectory& trajectory, TimeNs t, TimeNs max_interval);
 
+/// From position to position, m; 0 for one pose or none.
+double PathLength(const Trajectory& trajectory);
+
 }  // namespace evo

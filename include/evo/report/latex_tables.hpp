@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 #include "evo/evaluation/evaluation.hpp"
@@ -18,8 +17,5 @@ std::string LifetimeTable(const std::string& sequence, const LifetimeStatistics&
 /// error" the largest absolute value over the length of the path: the definitions that the paper's numbers fit. The
 /// rows below them are other readings of the same words, each named for what it is.
 std::string ErrorTable(const std::string& sequence, const Evaluation& evaluation);
-
-/// Writes such a text. Throws Error (kOutput).
-void WriteLatex(const std::filesystem::path& path, const std::string& table);
 
 }  // namespace evo

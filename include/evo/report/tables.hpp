@@ -47,5 +47,7 @@ void WriteLifetimes(const std::filesystem::path& path, const LifetimeStatistics&
 
 /// The summary for people: a few aligned lines that end with a newline.
 std::string FormatSummary(const Evaluation& evaluation);
+/// One such line; `note` ends its bracket.
+std::string FormatLifetimes(const LifetimeStatistics& statistics, const std::string& note = "");
 
 }  // namespace evo
