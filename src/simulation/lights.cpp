@@ -19,13 +19,15 @@ float Gap2(float x, float low, float high) { return Square(std::max({low - x, x 
 
 }  // namespace
 
-Lights::Lights(const Lighting& lighting, TimeNs t, const SE3& T_world_cam)
+double Flicker(const Lighting& lighting, TimeNs t) {
+  return 1.0 + lighting.flicker_depth * std::sin(2.0 * std::numbers::pi * lighting.flicker_hz * ToSeconds(t));
+}
+
+Lights::Lights(const Lighting& lighting, const SE3& T_world_cam)
     : head_lamps_(static_cast<float>(lighting.head_lamps)) {
   const SE3 T_cam_world = T_world_cam.Inverse();
-  const double phase = 2.0 * std::numbers::pi * lighting.flicker_hz * ToSeconds(t);
-  const double flicker = 1.0 + lighting.flicker_depth * std::sin(phase);
   for (const Lamp& lamp : lighting.lamps) {
-    lamps_.push_back({(T_cam_world * lamp.position).cast<float>(), static_cast<float>(lamp.intensity * flicker),
+    lamps_.push_back({(T_cam_world * lamp.position).cast<float>(), static_cast<float>(lamp.intensity),
                       static_cast<float>(lamp.intensity / kFaintest)});
   }
 }
@@ -47,13 +49,14 @@ Lights::OnSurface Lights::For(const SurfaceView& view, const RayBox& rays) const
   return shining;
 }
 
-float LampLight(const Lights::OnSurface& lights, float x, float y, float depth) {
+float HeadLampLight(const Lights::OnSurface& lights, float x, float y, float depth) {
+  const float beam = Square(1.0F / (1.0F + Square(x / kBeamX) + Square(y / kBeamY)));
+  const float distance2 = Square(depth) * (1.0F + Square(x) + Square(y));
+  return lights.head_lamps * beam / (distance2 * std::sqrt(distance2));
+}
+
+float StreetLampLight(const Lights::OnSurface& lights, float x, float y, float depth) {
   float light = 0.0F;
-  if (lights.head_lamps > 0.0F) {
-    const float beam = Square(1.0F / (1.0F + Square(x / kBeamX) + Square(y / kBeamY)));
-    const float distance2 = Square(depth) * (1.0F + Square(x) + Square(y));
-    light = lights.head_lamps * beam / (distance2 * std::sqrt(distance2));
-  }
   for (const auto& lamp : lights.lamps) {
     const float distance2 = Square(depth * x - lamp.position.x()) + Square(depth * y - lamp.position.y()) +
                             Square(depth - lamp.position.z());

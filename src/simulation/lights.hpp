@@ -3,17 +3,16 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "evo/core/time.hpp"
 #include "evo/geometry/se3.hpp"
 #include "evo/simulation/scene.hpp"
 #include "simulation/surface_view.hpp"
 
 namespace evo {
 
-/// The lamps of a scene at one time, in the camera's frame.
+/// The lamps of a scene in the camera's frame, without their flicker.
 class Lights {
  public:
-  Lights(const Lighting& lighting, TimeNs t, const SE3& T_world_cam);
+  Lights(const Lighting& lighting, const SE3& T_world_cam);
 
   bool any() const { return !lamps_.empty() || head_lamps_ > 0.0F; }
 
@@ -39,7 +38,9 @@ class Lights {
   float head_lamps_ = 0.0F;
 };
 
-/// Radiance of a white surface at depth * (x, y, 1) by the lamps alone.
-float LampLight(const Lights::OnSurface& lights, float x, float y, float depth);
+/// Radiance of a white surface at depth * (x, y, 1) by the head lamps alone.
+float HeadLampLight(const Lights::OnSurface& lights, float x, float y, float depth);
+/// And by the street lamps alone.
+float StreetLampLight(const Lights::OnSurface& lights, float x, float y, float depth);
 
 }  // namespace evo

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "evo/core/error.hpp"
+#include "evo/simulation/random.hpp"
 #include "simulation/lights.hpp"
 #include "simulation/ray_block.hpp"
 #include "simulation/surface_view.hpp"
@@ -39,30 +40,47 @@ Texture::Sample LookUp(const SurfaceView& view, const RayBlock& block, int i, fl
                                TextureLevel(view, block, i, depth));
 }
 
-/// Radiance that comes along each ray of the block.
-void Shade(const std::vector<SurfaceView>& views, const Lights& lights, float sky, RayBlock* block,
-           std::array<float, RayBlock::kSize>* radiance) {
+/// Radiance that comes along each ray of a block, by the parts of Renderer::Radiance.
+struct AlongRays {
+  std::array<float, RayBlock::kSize> steady;
+  std::array<float, RayBlock::kSize> lamps;
+  bool lit = false;  ///< `lamps` is not all 0
+};
+
+void Shade(const std::vector<SurfaceView>& views, const Lights& lights, float sky, RayBlock* block, AlongRays* along) {
   const RayBox box = block->Bounds();
   const auto seen = Cull(views, box);
   std::vector<Lights::OnSurface> shining;
-  if (lights.any()) {
-    for (const SurfaceView* view : seen) shining.push_back(lights.For(*view, box));
+  along->lit = false;
+  for (const SurfaceView* view : seen) {
+    if (!lights.any()) break;
+    shining.push_back(lights.For(*view, box));
+    along->lit = along->lit || !shining.back().lamps.empty();
   }
-  std::fill_n(radiance->begin(), block->count, 0.0F);
+  std::fill_n(along->steady.begin(), block->count, 0.0F);
+  std::fill_n(along->lamps.begin(), block->count, 0.0F);
   Walk(seen, block, [&](int i, int surface) {
-    float& sum = (*radiance)[block->ray[i]];
+    const int ray = block->ray[i];
     if (surface < 0) {
-      sum += block->through[i] * sky;
+      along->steady[ray] += block->through[i] * sky;
       return 0.0F;
     }
     const SurfaceView& view = *seen[surface];
     const float depth = 1.0F / block->w[i];
     const Texture::Sample sample = LookUp(view, *block, i, depth);
+    const float reflected = block->through[i] * sample.reflected;
     float light = view.light;
-    if (!shining.empty()) light += LampLight(shining[surface], block->x[i], block->y[i], depth);
-    sum += block->through[i] * (sample.reflected * light + sample.coverage * view.emission);
+    if (!shining.empty()) light += HeadLampLight(shining[surface], block->x[i], block->y[i], depth);
+    if (along->lit) along->lamps[ray] += reflected * StreetLampLight(shining[surface], block->x[i], block->y[i], depth);
+    along->steady[ray] += reflected * light + block->through[i] * sample.coverage * view.emission;
     return 1.0F - sample.coverage;
   });
+}
+
+float MeanOf(const float* rays, int count) {
+  float sum = 0.0F;
+  for (int k = 0; k < count; ++k) sum += rays[k];
+  return sum / static_cast<float>(count);
 }
 
 }  // namespace
@@ -95,9 +113,13 @@ Renderer::Rays Renderer::CastRays(int samples) {
   Vector2d ray = Vector2d::Zero();  // where there is none the last one stands in
   for (int p = 0; p < camera_.width() * camera_.height(); ++p) {
     const Vector2d centre(p % camera_.width(), p / camera_.width());
+    Random random(0, static_cast<std::uint64_t>(p));
+    const double shift_x = samples == 1 ? 0.5 : random.Uniform();
+    const double shift_y = samples == 1 ? 0.5 : random.Uniform();
     for (int j = 0; j < samples; ++j) {
       for (int i = 0; i < samples; ++i) {
-        const Vector2d place((i + (j + 0.5) / samples) / samples, (j + (samples - i - 0.5) / samples) / samples);
+        const Vector2d place((i + (j + shift_x) / samples) / samples,
+                             (j + (samples - 1 - i + shift_y) / samples) / samples);
         const auto found = camera_.Undistort(centre + place - Vector2d(0.5, 0.5));
         if (found) ray = *found;
         if (!found) blind_[p] = 1;
@@ -159,22 +181,27 @@ void Renderer::Gather(const Rays& rays, const Tile& part, RayBlock* block) const
 }
 
 void Renderer::Render(const Tile& tile, const Visible& visible, TimeNs t, const SE3& T_world_cam,
-                      std::span<float> radiance) const {
+                      Radiance* radiance) const {
   const auto views = Viewer(scene_, t, T_world_cam).Views(visible.surfaces, Bounds(tile));
-  const Lights lights(scene_.lighting, t, T_world_cam);
+  const Lights lights(scene_.lighting, T_world_cam);
   const int n = samples_.per_pixel;
+  const auto pixels = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
+  radiance->steady.assign(pixels, 0.0F);
+  radiance->lamps.assign(pixels, 0.0F);
+  radiance->lit = false;
   RayBlock block;
-  std::array<float, RayBlock::kSize> along;
+  AlongRays along;
   ForEachPart(tile, n, [&](const Tile& part) {
     Gather(samples_, part, &block);
     Shade(views, lights, static_cast<float>(scene_.lighting.sky), &block, &along);
+    radiance->lit = radiance->lit || along.lit;
     for (int p = 0; p < part.width * part.height; ++p) {
       const int x = part.x0 + p % part.width;
       const int y = part.y0 + p / part.width;
-      float sum = 0.0F;
-      for (int k = 0; k < n; ++k) sum += along[p * n + k];
-      const bool blind = blind_[y * camera_.width() + x] != 0;
-      radiance[(y - tile.y0) * tile.width + x - tile.x0] = blind ? 0.0F : sum / static_cast<float>(n);
+      if (blind_[y * camera_.width() + x] != 0) continue;
+      const int place = (y - tile.y0) * tile.width + x - tile.x0;
+      radiance->steady[place] = MeanOf(&along.steady[p * n], n);
+      if (along.lit) radiance->lamps[place] = MeanOf(&along.lamps[p * n], n);
     }
   });
 }

@@ -11,7 +11,7 @@ double Sun::Shade(const Eigen::Vector3d& normal) const {
 }
 
 SceneBuilder::SceneBuilder() {
-  scene_.bodies.push_back({[](TimeNs) { return SE3(); }, 0.0});
+  scene_.bodies.push_back({[](TimeNs) { return SE3(); }});
 }
 
 int SceneBuilder::Add(Texture texture) {

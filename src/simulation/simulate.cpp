@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <span>
+#include <utility>
 #include <vector>
 
 #include "evo/simulation/renderer.hpp"
@@ -15,8 +15,8 @@ namespace {
 
 constexpr TimeNs kMicrosecond = 1000;
 constexpr TimeNs kSlab = 10'000'000;        // tiles look up their surfaces and speed once a slab
-constexpr int kMostRenders = 1000;          // of a tile in a slab: 10 us, well below any sensor's bandwidth
-constexpr double kRendersPerFlicker = 8.0;  // in a period of the lamps
+constexpr int kMostRenders = 1000;  // of a tile in a slab: 10 us, well below any sensor's bandwidth
+constexpr double kStepsPerFlicker = 8.0;  // of the sensor in a period of the lamps
 
 /// Times k / rate in whole microseconds, from 0.
 class Schedule {
@@ -40,15 +40,16 @@ class Simulation {
  public:
   Simulation(const Scene& scene, const Camera& camera, const CameraMotion& motion, const SensorOptions& sensor,
              const SimulationOptions& options, std::uint64_t seed, ThreadPool* pool, SimulationSink* sink)
-      : camera_(camera),
+      : scene_(scene),
+        camera_(camera),
         motion_(motion),
         options_(options),
-        longest_step_s_(LongestStep(scene, options)),
         renderer_(scene, camera, options.samples),
         sensor_(camera.width(), camera.height(), sensor, seed),
         pool_(pool),
         sink_(sink),
         tiles_(CutIntoTiles(camera.width(), camera.height(), options.tile_px)),
+        tile_radiance_(tiles_.size()),
         tile_events_(tiles_.size()),
         tile_renders_(tiles_.size()),
         images_(options.image_hz),
@@ -69,12 +70,6 @@ class Simulation {
   }
 
  private:
-  static double LongestStep(const Scene& scene, const SimulationOptions& options) {
-    const bool flickers = !scene.lighting.lamps.empty() && scene.lighting.flicker_hz * scene.lighting.flicker_depth > 0;
-    if (!flickers) return options.longest_step_s;
-    return std::min(options.longest_step_s, 1.0 / (kRendersPerFlicker * scene.lighting.flicker_hz));
-  }
-
   static std::size_t PixelsOf(const Tile& tile) {
     return static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
   }
@@ -83,10 +78,9 @@ class Simulation {
   void RenderStart() {
     const SE3 T_world_cam = motion_(0);
     pool_->ForEach(tiles_.size(), [&](std::size_t i) {
-      std::vector<float> radiance(PixelsOf(tiles_[i]));
       const auto visible = renderer_.FindVisible(tiles_[i], 0, 0, T_world_cam, T_world_cam);
-      renderer_.Render(tiles_[i], visible, 0, T_world_cam, radiance);
-      sensor_.Advance(tiles_[i], 0, radiance, &tile_events_[i]);
+      renderer_.Render(tiles_[i], visible, 0, T_world_cam, &tile_radiance_[i]);
+      sensor_.Advance(tiles_[i], 0, At(0, tile_radiance_[i]), &tile_events_[i]);
     });
   }
 
@@ -98,16 +92,48 @@ class Simulation {
       const auto visible = renderer_.FindVisible(tile, begin, end, T_world_begin, T_world_end);
       const double speed = renderer_.ImageSpeed(tile, visible, begin, end, T_world_begin, T_world_end);
       const double duration_s = ToSeconds(end - begin);
-      const double needed = std::max(speed * duration_s / options_.largest_step_px, duration_s / longest_step_s_);
+      const double needed = std::max(speed * duration_s / options_.largest_step_px, duration_s / options_.longest_step_s);
       const auto renders = static_cast<TimeNs>(std::ceil(std::min<double>(needed, kMostRenders)));
-      std::vector<float> radiance(PixelsOf(tile));
+      Renderer::Radiance radiance;
+      TimeNs before = begin;
       for (TimeNs k = 1; k <= renders; ++k) {
         const TimeNs t = begin + (end - begin) * k / renders;
-        renderer_.Render(tile, visible, t, motion_(t), radiance);
-        sensor_.Advance(tile, t, radiance, &tile_events_[i]);
+        renderer_.Render(tile, visible, t, motion_(t), &radiance);
+        AdvanceTile(i, before, t, radiance);
+        std::swap(tile_radiance_[i], radiance);
+        before = t;
       }
-      tile_renders_[i] += static_cast<std::size_t>(renders) * radiance.size();
+      tile_renders_[i] += static_cast<std::size_t>(renders) * PixelsOf(tile);
     });
+  }
+
+  /// Advances the sensor's tile i from its last render to `next`. Where lamps flicker that takes steps of their own,
+  /// between which both parts of the radiance change linearly.
+  void AdvanceTile(std::size_t i, TimeNs from, TimeNs to, const Renderer::Radiance& next) {
+    const Renderer::Radiance& last = tile_radiance_[i];
+    if (!last.lit && !next.lit) return sensor_.Advance(tiles_[i], to, next.steady, &tile_events_[i]);
+    const double needed = ToSeconds(to - from) * scene_.lighting.flicker_hz * kStepsPerFlicker;
+    const auto steps = std::max<TimeNs>(1, static_cast<TimeNs>(std::ceil(needed)));
+    std::vector<float> seen(next.steady.size());
+    for (TimeNs k = 1; k <= steps; ++k) {
+      const TimeNs t = from + (to - from) * k / steps;
+      const auto share = static_cast<float>(k) / static_cast<float>(steps);
+      const auto flicker = static_cast<float>(Flicker(scene_.lighting, t));
+      for (std::size_t p = 0; p < seen.size(); ++p) {
+        const float at_last = last.steady[p] + flicker * last.lamps[p];
+        const float at_next = next.steady[p] + flicker * next.lamps[p];
+        seen[p] = (1.0F - share) * at_last + share * at_next;
+      }
+      sensor_.Advance(tiles_[i], t, seen, &tile_events_[i]);
+    }
+  }
+
+  /// The whole radiance at `t`.
+  std::vector<float> At(TimeNs t, const Renderer::Radiance& radiance) const {
+    const auto flicker = static_cast<float>(Flicker(scene_.lighting, t));
+    std::vector<float> sum = radiance.steady;
+    for (std::size_t p = 0; p < sum.size(); ++p) sum[p] += flicker * radiance.lamps[p];
+    return sum;
   }
 
   /// Hands on the events before `end`; later tiles and slabs may still add to those at `end` or, delayed by the
@@ -132,8 +158,11 @@ class Simulation {
   }
 
   void DeliverImage(TimeNs t) {
-    frame_.resize(PixelsOf({0, 0, camera_.width(), camera_.height()}));
-    RenderFrame(t, &Renderer::Render);
+    RenderFrame(t, [&](const Tile& tile, const Renderer::Visible& visible, const SE3& T_world_cam) {
+      Renderer::Radiance radiance;
+      renderer_.Render(tile, visible, t, T_world_cam, &radiance);
+      return At(t, radiance);
+    });
     const auto after = batch_.t.end() - std::ranges::lower_bound(batch_.t, t);
     ++counts_.images;
     sink_->OnImage(t, exposure_.Expose(camera_.width(), camera_.height(), frame_),
@@ -141,23 +170,24 @@ class Simulation {
   }
 
   void DeliverDepth(TimeNs t) {
-    frame_.resize(PixelsOf({0, 0, camera_.width(), camera_.height()}));
-    RenderFrame(t, &Renderer::Depth);
+    RenderFrame(t, [&](const Tile& tile, const Renderer::Visible& visible, const SE3& T_world_cam) {
+      std::vector<float> depth(PixelsOf(tile));
+      renderer_.Depth(tile, visible, t, T_world_cam, depth);
+      return depth;
+    });
     ++counts_.depth_maps;
     sink_->OnDepth(t, {camera_.width(), camera_.height(), {frame_.begin(), frame_.end()}});
   }
 
-  using RenderTile = void (Renderer::*)(const Tile&, const Renderer::Visible&, TimeNs, const SE3&,
-                                        std::span<float>) const;
-
-  /// All tiles at `t` into `frame_`.
-  void RenderFrame(TimeNs t, RenderTile render) {
+  /// All tiles at `t` into `frame_`. `render(tile, visible, T_world_cam)` gives a tile's values.
+  template <typename RenderTile>
+  void RenderFrame(TimeNs t, const RenderTile& render) {
+    frame_.resize(PixelsOf({0, 0, camera_.width(), camera_.height()}));
     const SE3 T_world_cam = motion_(t);
     pool_->ForEach(tiles_.size(), [&](std::size_t i) {
       const Tile& tile = tiles_[i];
-      std::vector<float> values(PixelsOf(tile));
       const auto visible = renderer_.FindVisible(tile, t, t, T_world_cam, T_world_cam);
-      (renderer_.*render)(tile, visible, t, T_world_cam, values);
+      const std::vector<float> values = render(tile, visible, T_world_cam);
       for (int row = 0; row < tile.height; ++row) {
         std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(row) * tile.width, tile.width,
                     frame_.begin() + static_cast<std::ptrdiff_t>(tile.y0 + row) * camera_.width() + tile.x0);
@@ -174,15 +204,16 @@ class Simulation {
     auto operator<=>(const Event&) const = default;
   };
 
+  const Scene& scene_;
   const Camera& camera_;
   const CameraMotion& motion_;
   const SimulationOptions& options_;
-  double longest_step_s_;
   Renderer renderer_;
   EventSensor sensor_;
   ThreadPool* pool_;
   SimulationSink* sink_;
   std::vector<Tile> tiles_;
+  std::vector<Renderer::Radiance> tile_radiance_;  ///< of the last render
   std::vector<EventColumns> tile_events_;
   std::vector<std::size_t> tile_renders_;
   std::vector<Event> waiting_;  ///< not delivered yet

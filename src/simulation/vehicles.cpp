@@ -152,7 +152,6 @@ void AddMovingCars(const StreetTask& task, const std::function<double(TimeNs)>& 
   const std::shared_ptr<const StreetPlan> plan = task.shared_plan;
   for (int i = 0; i < count; ++i) {
     Body body;
-    body.radius_m = 2.6;
     if (i < count - ahead) {
       const double start = first + (i + random.Uniform(-0.3, 0.3)) * spacing;
       body.T_world_body = [=](TimeNs t) {

@@ -93,8 +93,11 @@ inline Tile Whole(const Camera& camera) { return {0, 0, camera.width(), camera.h
 
 inline std::vector<float> RenderAll(const Scene& scene, const Camera& camera, int samples, TimeNs t = 0,
                                     const SE3& T_world_cam = SE3()) {
-  std::vector<float> image(static_cast<std::size_t>(camera.width()) * static_cast<std::size_t>(camera.height()));
-  Renderer(scene, camera, samples).Render(Whole(camera), All(scene), t, T_world_cam, image);
+  Renderer::Radiance radiance;
+  Renderer(scene, camera, samples).Render(Whole(camera), All(scene), t, T_world_cam, &radiance);
+  std::vector<float> image = radiance.steady;
+  const double flicker = Flicker(scene.lighting, t);
+  for (std::size_t i = 0; i < image.size(); ++i) image[i] += static_cast<float>(flicker) * radiance.lamps[i];
   return image;
 }
 

@@ -109,8 +109,8 @@ TEST_P(RendererOf, CornersAreWhereTheCameraProjectsThem) {
         error_x += (EdgeAt(along_row, 0.5, 0.0) + static_cast<int>(near.x()) - 10 - edge_x) / 9.0;
         error_y += (EdgeAt(along_column, 0.5, 0.0) + static_cast<int>(near.y()) - 10 - edge_y) / 9.0;
       }
-      // Along an edge that follows the pixels 2 x 2 rays can place it only to a quarter of a pixel.
-      EXPECT_LT(std::hypot(error_x, error_y), samples == 2 ? 0.25 : 0.03) << near.transpose() << " " << samples;
+      std::printf("ERR %d %.4f\n", samples, std::hypot(error_x, error_y));
+      EXPECT_LT(std::hypot(error_x, error_y), samples == 2 ? 0.1 : 0.03) << near.transpose() << " " << samples;
       EXPECT_LT((lens.Project(corner) - near).norm(), 1e-6);
     }
   }
@@ -122,13 +122,13 @@ TEST_P(RendererOf, DoesNotDependOnTheTiles) {
   const auto whole = RenderAll(scene, lens, 2);
   const Renderer renderer(scene, lens, 2);
   for (const Tile& tile : CutIntoTiles(lens.width(), lens.height(), 21)) {
-    std::vector<float> part(tile.width * tile.height);
+    Renderer::Radiance part;
     const auto visible = renderer.FindVisible(tile, 0, 0, SE3(), SE3());
-    renderer.Render(tile, visible, 0, SE3(), part);
+    renderer.Render(tile, visible, 0, SE3(), &part);
     for (int i = 0; i < tile.width * tile.height; ++i) {
       const int x = tile.x0 + i % tile.width;
       const int y = tile.y0 + i / tile.width;
-      ASSERT_NEAR(part[i], whole[y * lens.width() + x], 1e-5) << x << " " << y;
+      ASSERT_NEAR(part.steady[i], whole[y * lens.width() + x], 1e-5) << x << " " << y;
     }
   }
 }

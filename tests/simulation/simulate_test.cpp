@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <tuple>
+#include <utility>
 
 #include "evo/simulation/random.hpp"
 
@@ -54,7 +56,7 @@ Scene MakeWall() {
   wall.edge_v = {0.0, 8.0, 0.0};
   wall.texels = {80.0, 80.0};
   scene.surfaces.push_back(wall);
-  scene.bodies.push_back({[](TimeNs) { return SE3(); }, 0.0});
+  scene.bodies.push_back({[](TimeNs) { return SE3(); }});
   return scene;
 }
 
@@ -75,7 +77,7 @@ class SimulateTest : public ::testing::Test {
     return Simulate(scene, camera, motion, kDuration, sensor, options, 3, &pool, nullptr, record);
   }
 
-  const Scene scene = MakeWall();
+  Scene scene = MakeWall();
   const Camera camera{Calibration{Distortion::kRadTan, 50, 40, 60.0, 60.0, 24.0, 20.0, {-0.1, 0.02, 0.0, 0.0, 0.0}}};
   CameraMotion motion = [](TimeNs t) { return SE3(Eigen::Quaterniond::Identity(), {kSpeed * ToSeconds(t), 0.0, 0.0}); };
   SimulationOptions options;
@@ -141,6 +143,64 @@ TEST_F(SimulateTest, RendersAsOftenAsTheMotionNeeds) {
   EXPECT_GE(more.pixel_renders, counts.pixel_renders);
   EXPECT_NEAR(static_cast<double>(fine.events.size()), static_cast<double>(coarse.events.size()),
               0.03 * static_cast<double>(coarse.events.size()));
+}
+
+/// Lamps before the wall, no other light; thresholds that the flicker alone crosses.
+Lighting LampsAlone() {
+  Lighting lighting;
+  lighting.ambient = 0.0;
+  lighting.sky = 0.0;
+  lighting.lamps = {{{0.3, -0.5, 0.5}, 4.0}, {{-0.8, 0.4, 0.9}, 2.0}};
+  return lighting;
+}
+
+/// log(1.5) - log(0.5) = 1.10 is crossed by three thresholds of 0.3 up and three down in each of twelve periods.
+TEST_F(SimulateTest, LampsFlickerInFullBetweenFewRenders) {
+  scene.lighting = LampsAlone();
+  motion = [](TimeNs) { return SE3(); };
+  SensorOptions sensor = Noiseless();
+  sensor.threshold_on = 0.3;
+  sensor.threshold_off = 0.3;
+  sensor.bandwidth_hz = 0.0;
+  sensor.refractory_s = 0.0;
+  Record record;
+  const SimulationCounts counts = Run(sensor, &record);
+  EXPECT_EQ(counts.pixel_renders, 50u * 40u * 20u);
+  std::vector<int> up(50 * 40), down(50 * 40);
+  for (std::size_t i = 0; i < record.events.size(); ++i) {
+    ++(record.events.polarity[i] > 0 ? up : down)[50 * record.events.y[i] + record.events.x[i]];
+  }
+  for (std::size_t p = 0; p < up.size(); ++p) {
+    EXPECT_NEAR(up[p], 36, 1) << p;
+    EXPECT_NEAR(down[p], 36, 1) << p;
+  }
+}
+
+TEST_F(SimulateTest, FewRendersUnderLampsShowWhatManyDo) {
+  scene.lighting = LampsAlone();
+  motion = [](TimeNs t) { return SE3(Eigen::Quaterniond::Identity(), {3.0 * ToSeconds(t), 0.0, 0.0}); };  // 90 px/s
+  SensorOptions sensor = Noiseless();
+  sensor.threshold_on = 0.2;
+  Record few;
+  const SimulationCounts counts = Run(sensor, &few);
+  options.longest_step_s = 1.0 / 960.0;
+  Record many;
+  EXPECT_GT(Run(sensor, &many).pixel_renders, 4 * counts.pixel_renders);
+  std::map<std::pair<int, int>, std::vector<TimeNs>> stamps;
+  for (std::size_t i = 0; i < many.events.size(); ++i) {
+    stamps[{many.events.x[i], many.events.y[i]}].push_back(many.events.t[i]);
+  }
+  // Each event has one of the reference at its pixel within a tenth of the flicker's period.
+  std::size_t alike = 0;
+  for (std::size_t i = 0; i < few.events.size(); ++i) {
+    const auto& there = stamps[{few.events.x[i], few.events.y[i]}];
+    const auto at = std::ranges::lower_bound(there, few.events.t[i] - 800'000);
+    if (at != there.end() && *at < few.events.t[i] + 800'000) ++alike;
+  }
+  printf("ALIKE %zu of %zu, %zu\n", alike, few.events.size(), many.events.size());
+  EXPECT_NEAR(static_cast<double>(few.events.size()), static_cast<double>(many.events.size()),
+              0.02 * static_cast<double>(many.events.size()));
+  EXPECT_GT(static_cast<double>(alike), 0.95 * static_cast<double>(few.events.size()));
 }
 
 TEST_F(SimulateTest, DepthAndPosesAgree) {

@@ -29,13 +29,15 @@ struct RayBlock;
 /// many threads at once. The result for a pixel does not depend on how the sensor is cut, but for rounding.
 ///
 /// Light: radiance = reflectance * (ambient * shade + lamps) + emission, holes looked through. A lamp gives
-/// intensity * cos(incidence) / distance^2 * (1 + depth sin(2 pi f t)), faded out smoothly where that would be below
-/// 5e-4. The head lamps sit at the camera and give head_lamps * beam * cos(incidence) / distance^2 with
+/// intensity * cos(incidence) / distance^2 * Flicker(lighting, t), faded out smoothly where that would be below 5e-4. The
+/// head lamps sit at the camera and give head_lamps * beam * cos(incidence) / distance^2 with
 /// beam = 1 / (1 + (x / 0.35)^2 + (y / 0.15)^2)^2 on the plane z = 1. Only the side that faces a light is lit by it.
 class Renderer {
  public:
   /// Each pixel is the mean of samples x samples rays spread over its square around its centre, in a rotated grid: no
-  /// two share a row or a column, so that an edge that crosses a pixel changes it in samples^2 steps.
+  /// two share a row or a column, so that an edge that crosses a pixel changes it in samples^2 steps. The grid lies a
+  /// little differently in each pixel (by up to half such a step, at random, the same in every run): so an edge that runs
+  /// along the pixels is at its place on average over them, not at the nearest step.
   /// Throws Error(kInput) where `samples` is not in [1, 16] or a surface names a texture or body that is not there.
   Renderer(const Scene& scene, const Camera& camera, int samples);
 
@@ -48,10 +50,16 @@ class Renderer {
   Visible FindVisible(const Tile& tile, TimeNs from, TimeNs to, const SE3& T_world_cam_from,
                       const SE3& T_world_cam_to) const;
 
-  /// Radiance of the pixels of `tile` at time `t`, row by row, into `radiance` (width * height). 0 where the lens model
-  /// has no ray.
-  void Render(const Tile& tile, const Visible& visible, TimeNs t, const SE3& T_world_cam,
-              std::span<float> radiance) const;
+  /// Radiance of pixels (row by row) in two parts, so that lamps may flicker faster than scenes are rendered: at time t
+  /// it is steady + Flicker(lighting, t) * lamps.
+  struct Radiance {
+    std::vector<float> steady;
+    std::vector<float> lamps;  ///< by the street lamps
+    bool lit = false;          ///< false: `lamps` is all 0
+  };
+
+  /// What the pixels of `tile` see with the camera and the bodies as at time `t`. 0 where the lens model has no ray.
+  void Render(const Tile& tile, const Visible& visible, TimeNs t, const SE3& T_world_cam, Radiance* radiance) const;
 
   /// Depth (z in the camera frame, m) along the rays through the pixel centres of the nearest surface that covers half
   /// or more there, NaN where there is only sky or no ray.

@@ -31,10 +31,9 @@ struct Surface {
 /// Something rigid that moves. Body 0 of a scene is the static world (identity).
 struct Body {
   std::function<SE3(TimeNs)> T_world_body;  ///< time since the start of the run
-  double radius_m = 0.0;                    ///< of a ball around the body's origin that holds all its surfaces
 };
 
-/// A street lamp: light that falls off with the square of the distance and flickers with the mains.
+/// A street lamp: light that falls off with the square of the distance and flickers with the mains, all in step.
 struct Lamp {
   Eigen::Vector3d position;
   double intensity = 0.0;  ///< radiance of a white surface that faces it at 1 m
@@ -48,6 +47,9 @@ struct Lighting {
   double flicker_depth = 0.5;  ///< relative amplitude of it, in [0, 1)
   std::vector<Lamp> lamps;     ///< street lamps
 };
+
+/// Light of the street lamps at `t` relative to its mean: 1 + depth sin(2 pi f t).
+double Flicker(const Lighting& lighting, TimeNs t);
 
 struct Scene {
   std::vector<Texture> textures;
