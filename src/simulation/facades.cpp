@@ -37,7 +37,12 @@ HouseFactory::HouseFactory(SceneBuilder* builder, bool night, Random* random)
       gable_(builder->Add(PaintGable(*random))),
       plain_(builder->Add(PaintPlain(*random, 0.6))) {}
 
-void HouseFactory::Build(const Place& place, Random* random) {
+void HouseFactory::Build(Place place, Random* random) {
+  // The front runs from left to right as seen from the road, so that its lettering can be read.
+  if (place.along.dot(kUp.cross(place.inwards)) > 0.0) {
+    place.corner += place.along;
+    place.along = -place.along;
+  }
   const int floors = 1 + random->Index(4);
   const double tone = random->Uniform(0.75, 1.1);
   const double height = kFloorHeight * (floors + 1);
@@ -112,8 +117,13 @@ void HouseFactory::AddSigns(const Place& place, Random* random) {
   const Eigen::Vector3d along = place.along / width;
   if (random->Chance(0.5)) {  // across the pavement
     const Eigen::Vector3d from = place.corner + random->Uniform(0.1, 0.9) * place.along + 3.9 * kUp;
-    builder_.Add(from - 0.1 * place.inwards, -random->Uniform(0.6, 1.0) * place.inwards, -0.7 * kUp,
-                 builder_.Whole(OneOf(signs_, random)), along);
+    const Eigen::Vector3d out = -random->Uniform(0.6, 1.0) * place.inwards;
+    const int sign = OneOf(signs_, random);
+    // One face a side.
+    for (const double face : {-1.0, 1.0}) {
+      const Eigen::Vector3d foot = from + (face > 0.0 ? out : Eigen::Vector3d::Zero()) + 0.02 * face * along;
+      builder_.Add(foot - 0.1 * place.inwards, -face * out, -0.7 * kUp, builder_.Whole(sign), face * along);
+    }
   }
   if (random->Chance(0.35)) {  // an awning
     const double at = random->Uniform(0.0, 0.6) * width;

@@ -11,6 +11,7 @@ namespace evo {
 struct CarriagewayLayout {
   double lanes_m = 7.0;    ///< both lanes
   double parking_m = 2.2;  ///< strip on each side of them
+  bool bays = true;        ///< lines between the places of parked cars
   double width() const { return lanes_m + 2.0 * parking_m; }
 };
 inline constexpr int kRoadWidthTexels = 1024;

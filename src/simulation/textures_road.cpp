@@ -100,7 +100,7 @@ Texture PaintLanes(Random& random, const CarriagewayLayout& layout, int length) 
   const int bays = std::max(1, static_cast<int>(std::lround(length / texels_per_m / 5.7)));
   const int park = texels(layout.parking_m);
   for (const int x : {park, kRoadWidthTexels - park - line}) MarkRectangle(random, &painter, x, 0, line, length);
-  for (int i = 0; i < bays && park > 2 * line; ++i) {
+  for (int i = 0; i < bays && layout.bays && park > 2 * line; ++i) {
     MarkRectangle(random, &painter, 0, i * length / bays, park, line);
     MarkRectangle(random, &painter, kRoadWidthTexels - park, i * length / bays, park, line);
   }
