@@ -64,8 +64,9 @@ Texture PaintCarShadow();
 /// Lettering in a frame, 256 x 64; a round or square traffic sign, 64 x 64 with holes around it.
 Texture PaintShopSign(Random& random);
 Texture PaintTrafficSign(Random& random);
-/// High-contrast shapes, 512 x 512; with a picture like a photograph's, 512 x 512; a printed box's side, 256 x 256.
+/// High-contrast shapes, 512 x 512; a few large ones; a picture like a photograph's; a printed box's side, 256 x 256.
 Texture PaintPoster(Random& random);
+Texture PaintPlacard(Random& random);
 Texture PaintPicture(Random& random);
 Texture PaintBoxSide(Random& random);
 /// Of one reflectance with faint noise, 64 x 64.

@@ -62,8 +62,8 @@ Painter Asphalt(Random& random, int length) {
 // Stones, dirt and wear over everything, markings too.
 Texture Weather(Random& random, Painter* painter) {
   painter->Noise(random, 256, 256, 3, 0.015, 0.8);
-  painter->Noise(random, 32, 64, 4, 0.015, 0.9);
-  painter->Grain(random, 0.035);
+  painter->Noise(random, 32, 64, 4, 0.015, 0.8);
+  painter->Grain(random, 0.02);
   for (int i = 0; i < painter->width() * painter->height() / 8000; ++i) {  // oil, leaves, chewing gum
     const double radius = random.Uniform(1.0, 4.5);
     painter->Ellipse(random.Uniform() * painter->width(), random.Uniform() * painter->height(), radius,

@@ -42,7 +42,8 @@ Scene MakeStreet(const RoadLine& road, const StreetOptions& options, double came
 /// camera starts in its middle looking along +z.
 Scene MakeRoom(std::uint64_t seed);
 
-/// Posters at three depths (0.8 m to 2.5 m) before a camera on a slider, in the style of slider_depth.
+/// A table with boxes at 0.4 m, 0.7 m and 1 m before a wall with posters at 1.4 m, for a camera on a slider that goes
+/// 1 m to the right, in the style of slider_depth.
 Scene MakeSliderScene(std::uint64_t seed);
 
 }  // namespace evo
