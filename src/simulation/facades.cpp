@@ -35,6 +35,7 @@ HouseFactory::HouseFactory(SceneBuilder* builder, bool night, Random* random)
       signs_(PaintMany(builder, random, 6, PaintShopSign)),
       roof_(builder->Add(PaintRoof(*random))),
       gable_(builder->Add(PaintGable(*random))),
+      lit_window_(builder->Add(PaintLitWindow(*random))),
       plain_(builder->Add(PaintPlain(*random, 0.6))) {}
 
 void HouseFactory::Build(Place place, Random* random) {
@@ -138,7 +139,7 @@ void HouseFactory::AddLitWindows(const Place& place, int floors, Random* random)
   for (int floor = 0; floor <= floors; ++floor) {
     for (int axis = 0; axis < place.axes; ++axis) {
       if (!random->Chance(0.12)) continue;
-      Look look = builder_.Whole(plain_);
+      Look look = builder_.Whole(lit_window_);
       look.emission = random->Uniform(0.03, 0.25);
       const Eigen::Vector3d centre =
           place.corner + (axis + 0.5) * cell + (floor + 0.5) * kFloorHeight * kUp - 0.03 * place.inwards;

@@ -120,6 +120,7 @@ class HouseFactory {
   std::vector<int> uppers_, grounds_, walls_, signs_;
   int roof_ = 0;
   int gable_ = 0;
+  int lit_window_ = 0;
   int plain_ = 0;
 };
 

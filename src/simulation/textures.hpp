@@ -38,6 +38,8 @@ Texture PaintGroundFloor(Random& random);
 Texture PaintWall(Random& random);
 /// A triangle of it on its base with holes beside it, 128 x 64.
 Texture PaintGable(Random& random);
+/// The panes of a window, 64 x 64, with holes where its frame and curtains are.
+Texture PaintLitWindow(Random& random);
 /// 256 x 256 texels of about 3 cm.
 Texture PaintRoof(Random& random);
 

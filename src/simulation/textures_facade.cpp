@@ -207,6 +207,16 @@ Texture PaintGable(Random& random) {
   return painter.Finish();
 }
 
+Texture PaintLitWindow(Random& random) {
+  Painter painter(64, 64, 0.5);
+  painter.Hole(30, 0, 4, 64);
+  painter.Hole(0, 20, 64, 3);
+  const int curtain = Between(random, 6, 12);
+  painter.Hole(0, 0, curtain, 64);
+  painter.Hole(64 - curtain, 0, curtain, 64);
+  return painter.Finish();
+}
+
 Texture PaintRoof(Random& random) {
   const double reflectance = random.Uniform(0.15, 0.35);
   Painter painter(256, 256, reflectance);
