@@ -25,6 +25,7 @@ struct SimulateArguments {
   std::string format = "mvsec";
   fs::path out;
   std::optional<int> seed;
+  double from_s = 0.0;
   std::optional<double> duration_s;
   double preview_every_s = 0.0;
   bool print = false;
@@ -44,13 +45,10 @@ struct SimulateConfig {
   Parameters parameters;
 };
 
-TimeNs Duration(const SimulateArguments& arguments, const SimulatedRun& run) {
-  if (!arguments.duration_s) return run.duration;
-  const TimeNs duration = FromSeconds(*arguments.duration_s);
-  if (duration <= run.duration) return duration;
-  throw Error(ErrorKind::kUsage, "--duration: the motion ends after " + FormatTime(run.duration) +
-                                     " s; give less, or raise duration_s of "
-                                     "motion.vehicle, motion.handheld or motion.slider");
+/// The part of the scene that --from and --duration name.
+SimulatedRun ChosenPart(const SimulateArguments& arguments, const SimulatedRun& run) {
+  const TimeNs from = FromSeconds(arguments.from_s);
+  return PartOf(run, from, arguments.duration_s ? FromSeconds(*arguments.duration_s) : run.duration - from);
 }
 
 void PrintSummary(const std::string& name, const Camera& camera, const Trajectory& poses,
@@ -104,10 +102,9 @@ void RunSimulate(const SimulateArguments& arguments, const std::vector<std::stri
   checked.emplace_back("manifest.json");
   CheckOutputFolder(arguments.out, checked, arguments.common.force);
 
-  const SimulatedRun run =
-      NamingPlace(scene_file.empty() ? "simulate" : scene_file, [&] { return MakeRun(config.scene); });
-  const TimeNs duration = Duration(arguments, run);
-  const Trajectory poses = Sample(run.motion, duration, config.output.pose_hz);
+  const SimulatedRun run = NamingPlace(scene_file.empty() ? "simulate" : scene_file,
+                                       [&] { return ChosenPart(arguments, MakeRun(config.scene)); });
+  const Trajectory poses = Sample(run.motion, run.duration, config.output.pose_hz);
   RunRecord record(command_line, config.parameters);
   AddInputs(arguments, config.scene, &record);
   if (arguments.common.force) RemoveSequenceImages(arguments.out);
@@ -118,7 +115,7 @@ void RunSimulate(const SimulateArguments& arguments, const std::vector<std::stri
   SimulationSink* const sink = arguments.preview_every_s > 0.0 ? static_cast<SimulationSink*>(&preview) : output.get();
   const SimulationCounts counts = record.Time("simulate", [&] {
     Progress progress("simulate", !arguments.common.quiet);
-    return Simulate(run.scene, run.camera, run.motion, duration, config.scene.sensor, config.scene.simulation,
+    return Simulate(run.scene, run.camera, run.motion, run.duration, config.scene.sensor, config.scene.simulation,
                     static_cast<std::uint64_t>(config.scene.seed), &pool, &progress, sink);
   });
   output->Commit();
@@ -147,7 +144,10 @@ Command AddSimulateCommand(CLI::App& app) {
   parser->add_option("--seed", arguments->seed, "instead of the scene's own: another street, other noise")
       ->check(CLI::Range(0, std::numeric_limits<int>::max()).description(""))
       ->type_name("N");
-  parser->add_option("--duration", arguments->duration_s, "end after this many seconds of the scene")
+  parser->add_option("--from", arguments->from_s, "begin this many seconds into the scene")
+      ->check(CLI::Range(0.0, 1e6).description(""))
+      ->type_name("S");
+  parser->add_option("--duration", arguments->duration_s, "length; default: up to the scene's end")
       ->check(CLI::Range(0.001, 1e6).description(""))
       ->type_name("S");
   parser->add_option("--preview-every", arguments->preview_every_s, "draw image and events every S seconds")
@@ -156,7 +156,8 @@ Command AddSimulateCommand(CLI::App& app) {
   parser->add_flag("--print", arguments->print, "print every parameter of the scene and its meaning as YAML instead");
   AddSettingOptions(*parser, arguments->common);
   AddComputeOptions(*parser, arguments->common);
-  parser->footer("Example:\n  evo-run simulate configs/scenes/driving_day.yaml --duration 3 --out out/driving_day");
+  parser->footer(
+      "Example:\n  evo-run simulate configs/scenes/driving_day.yaml --from 50 --duration 8 --out out/driving_day");
   return {parser, [arguments](const auto& command_line) { RunSimulate(*arguments, command_line); }};
 }
 

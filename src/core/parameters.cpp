@@ -186,7 +186,9 @@ void Parameters::Print(const std::string& prefix, const std::string& indent, std
     const std::string name = entry.name.substr(prefix.size());
     const auto dot = name.find('.');
     if (dot == std::string::npos) {
-      *yaml += indent + name + ": " + Format(entry) + "  # " + Describe(entry) + '\n';
+      const auto* const* text = std::get_if<std::string*>(&entry.value);
+      const std::string value = text ? YAML::Dump(YAML::Node(**text)) : Format(entry);  // quoted where it must be
+      *yaml += indent + name + ": " + value + "  # " + Describe(entry) + '\n';
     } else if (std::ranges::find(groups, name.substr(0, dot)) == groups.end()) {
       groups.push_back(name.substr(0, dot));
     }

@@ -35,9 +35,15 @@ HouseFactory::HouseFactory(SceneBuilder* builder, bool night, Random* random)
       signs_(PaintMany(builder, random, 6, PaintShopSign)),
       roof_(builder->Add(PaintRoof(*random))),
       gable_(builder->Add(PaintGable(*random))),
+      lit_window_(builder->Add(PaintLitWindow(*random))),
       plain_(builder->Add(PaintPlain(*random, 0.6))) {}
 
-void HouseFactory::Build(const Place& place, Random* random) {
+void HouseFactory::Build(Place place, Random* random) {
+  // The front runs from left to right as seen from the road, so that its lettering can be read.
+  if (place.along.dot(kUp.cross(place.inwards)) > 0.0) {
+    place.corner += place.along;
+    place.along = -place.along;
+  }
   const int floors = 1 + random->Index(4);
   const double tone = random->Uniform(0.75, 1.1);
   const double height = kFloorHeight * (floors + 1);
@@ -112,8 +118,13 @@ void HouseFactory::AddSigns(const Place& place, Random* random) {
   const Eigen::Vector3d along = place.along / width;
   if (random->Chance(0.5)) {  // across the pavement
     const Eigen::Vector3d from = place.corner + random->Uniform(0.1, 0.9) * place.along + 3.9 * kUp;
-    builder_.Add(from - 0.1 * place.inwards, -random->Uniform(0.6, 1.0) * place.inwards, -0.7 * kUp,
-                 builder_.Whole(OneOf(signs_, random)), along);
+    const Eigen::Vector3d out = -random->Uniform(0.6, 1.0) * place.inwards;
+    const int sign = OneOf(signs_, random);
+    // One face a side.
+    for (const double face : {-1.0, 1.0}) {
+      const Eigen::Vector3d foot = from + (face > 0.0 ? out : Eigen::Vector3d::Zero()) + 0.02 * face * along;
+      builder_.Add(foot - 0.1 * place.inwards, -face * out, -0.7 * kUp, builder_.Whole(sign), face * along);
+    }
   }
   if (random->Chance(0.35)) {  // an awning
     const double at = random->Uniform(0.0, 0.6) * width;
@@ -128,7 +139,7 @@ void HouseFactory::AddLitWindows(const Place& place, int floors, Random* random)
   for (int floor = 0; floor <= floors; ++floor) {
     for (int axis = 0; axis < place.axes; ++axis) {
       if (!random->Chance(0.12)) continue;
-      Look look = builder_.Whole(plain_);
+      Look look = builder_.Whole(lit_window_);
       look.emission = random->Uniform(0.03, 0.25);
       const Eigen::Vector3d centre =
           place.corner + (axis + 0.5) * cell + (floor + 0.5) * kFloorHeight * kUp - 0.03 * place.inwards;

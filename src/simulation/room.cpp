@@ -33,14 +33,15 @@ void AddPosters(SceneBuilder* builder, const std::vector<int>& posters, Random* 
   for (const int axis : {0, 2}) {
     const int u_axis = 2 - axis;
     for (const double side : {-1.0, 1.0}) {
+      const double right = axis == 2 ? side : -side;  // along the axis of u, of who looks at the wall
       for (const double top : {-1.45, -0.3}) {
         for (double u = -kHalf[u_axis] + 0.05; u + 1.1 < kHalf[u_axis];) {
           const double width = random->Uniform(0.6, 1.1);
           Eigen::Vector3d origin;
           origin[axis] = side * (kHalf[axis] - 0.01);
-          origin[u_axis] = u;
+          origin[u_axis] = right > 0.0 ? u : u + width;
           origin.y() = top + random->Uniform(0.0, 0.1);
-          builder->Add(origin, width * Eigen::Vector3d::Unit(u_axis),
+          builder->Add(origin, right * width * Eigen::Vector3d::Unit(u_axis),
                        random->Uniform(0.6, 1.0) * Eigen::Vector3d::UnitY(),
                        builder->Whole(posters[random->Index(static_cast<int>(posters.size()))]),
                        -side * Eigen::Vector3d::Unit(axis));
@@ -53,11 +54,12 @@ void AddPosters(SceneBuilder* builder, const std::vector<int>& posters, Random* 
 
 // Stacks along the walls, out of the camera's way.
 void AddBoxes(SceneBuilder* builder, const std::vector<int>& sides, Random* random) {
-  constexpr int kStacks = 18;
+  constexpr int kStacks = 22;
   for (int i = 0; i < kStacks; ++i) {
     const double angle = 2.0 * std::numbers::pi * (i + random->Uniform(-0.3, 0.3)) / kStacks;
-    Eigen::Vector3d foot(1.55 * std::cos(angle), kHalf.y(), 1.95 * std::sin(angle));
-    const int boxes = 1 + random->Index(4);
+    const double nearness = random->Uniform(0.9, 1.05);
+    Eigen::Vector3d foot(1.6 * nearness * std::cos(angle), kHalf.y(), 2.05 * nearness * std::sin(angle));
+    const int boxes = 2 + random->Index(5);
     for (int box = 0; box < boxes; ++box) {
       const Eigen::Vector3d size(random->Uniform(0.25, 0.5), random->Uniform(0.2, 0.45), random->Uniform(0.25, 0.5));
       const Eigen::Vector3d centre = foot - Eigen::Vector3d(0.0, 0.5 * size.y() + 0.001, 0.0);
@@ -76,13 +78,13 @@ Scene MakeRoom(std::uint64_t seed) {
   builder.SetSun({Eigen::Vector3d(0.3, -0.8, -0.52).normalized(), 0.4});
   builder.lighting().sky = 0.0;
   Random random(seed, kStream);
-  const int wall = builder.Add(PaintWall(random));
+  const int wall = builder.Add(PaintPlain(random, 0.55));
   const int carpet = builder.Add(PaintPicture(random));
   std::vector<int> posters;
   for (int i = 0; i < 5; ++i) posters.push_back(builder.Add(PaintPoster(random)));
   for (int i = 0; i < 3; ++i) posters.push_back(builder.Add(PaintPicture(random)));
   std::vector<int> boxes;
-  for (int i = 0; i < 6; ++i) boxes.push_back(builder.Add(PaintBoxSide(random)));
+  for (int i = 0; i < 10; ++i) boxes.push_back(builder.Add(PaintBoxSide(random)));
   for (const int axis : {0, 1, 2}) {
     for (const double side : {-1.0, 1.0}) {
       const bool floor = axis == 1 && side > 0.0;

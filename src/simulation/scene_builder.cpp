@@ -56,10 +56,10 @@ void SceneBuilder::AddBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& 
     // v points down on the upright sides.
     const int v_axis = axis == 1 ? 2 : 1;
     const int u_axis = 3 - axis - v_axis;
-    const Eigen::Vector3d u = axes.col(u_axis) * size[u_axis];
     const Eigen::Vector3d v = axes.col(v_axis) * size[v_axis];
     for (const double side : {-1.0, 1.0}) {
       const Eigen::Vector3d outwards = axes.col(axis) * side;
+      const Eigen::Vector3d u = outwards.cross(axes.col(v_axis)) * size[u_axis];  // to the right of who looks at it
       Add(centre + outwards * (0.5 * size[axis]) - 0.5 * (u + v), u, v, Whole(texture, tone), outwards);
     }
   }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "evo/core/error.hpp"
+#include "evo/geometry/known_cameras.hpp"
 #include "evo/io/calibration_io.hpp"
 #include "evo/io/trajectory_io.hpp"
 
@@ -14,28 +15,9 @@ namespace {
 
 constexpr double kViewAhead = 250.0;  // m of road beyond the end of the drive, so that the street is never seen to end
 
-/// Left DAVIS346 of MVSEC's outdoor_day and the DAVIS240C of UZH's boxes and slider sequences, as published.
-const Calibration kDavis346{
-    Distortion::kEquidistant,
-    346,
-    260,
-    223.9940010790056,
-    223.61783486959376,
-    170.7684322973841,
-    128.18711828338436,
-    {-0.033904378348448685, -0.01537260902537579, -0.022284741346941413, 0.0069204143687187645}};
-const Calibration kDavis240c{Distortion::kRadTan,
-                             240,
-                             180,
-                             199.092366542,
-                             198.82882047,
-                             132.192071378,
-                             110.712660011,
-                             {-0.368436311798, 0.150947243557, -0.000296130534385, -0.000759431726241, 0.0}};
-
 Calibration FindCalibration(const std::string& name) {
-  if (name == "davis346") return kDavis346;
-  if (name == "davis240c") return kDavis240c;
+  if (name == "davis346") return MvsecDavis346();
+  if (name == "davis240c") return UzhDavis240c();
   return ReadCalibration(name);
 }
 
@@ -118,6 +100,20 @@ SimulatedRun MakeRun(const SceneOptions& options) {
     return MakeStreet(MakeRoad(options, motion.distance_m), options.street, options.vehicle.camera_height_m, seed);
   };
   return {world(), camera, motion.T_world_cam, motion.duration};
+}
+
+SimulatedRun PartOf(const SimulatedRun& run, TimeNs from, TimeNs duration) {
+  if (from < 0 || duration <= 0 || from + duration > run.duration) {
+    throw Error(ErrorKind::kUsage, "the motion ends after " + FormatTime(run.duration) +
+                                       " s; give less for --from or --duration, or raise duration_s of "
+                                       "motion.vehicle, motion.handheld or motion.slider");
+  }
+  const auto later = [from]<class Motion>(const Motion& motion) -> Motion {
+    return [motion, from](TimeNs t) { return motion(t + from); };
+  };
+  SimulatedRun part{run.scene, run.camera, later(run.motion), duration};
+  for (Body& body : part.scene.bodies) body.T_world_body = later(body.T_world_body);
+  return part;
 }
 
 Trajectory Sample(const CameraMotion& motion, TimeNs duration, double hz) {

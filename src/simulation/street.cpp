@@ -41,8 +41,9 @@ void Register(Parameters& parameters, StreetOptions& o) {
   parameters.Add("street.trees_per_100_m", &o.trees_per_100_m, 0.0, 40.0, "both sides together");
   parameters.Add("street.poles_per_100_m", &o.poles_per_100_m, 0.0, 40.0, "street lamps, some with signs");
   parameters.Add("street.parked_cars_per_100_m", &o.parked_cars_per_100_m, 0.0, 36.0, "both sides together");
-  parameters.Add("street.moving_cars_per_100_m", &o.moving_cars_per_100_m, 0.0, 12.0, "oncoming and ahead");
-  parameters.Add("street.moving_car_speed_m_s", &o.moving_car_speed_m_s, 0.0, 40.0, "of the oncoming ones (m/s)");
+  parameters.Add("street.oncoming_cars_per_100_m", &o.oncoming_cars_per_100_m, 0.0, 12.0, "in the other lane");
+  parameters.Add("street.oncoming_car_speed_m_s", &o.oncoming_car_speed_m_s, 0.0, 40.0, "m/s");
+  parameters.Add("street.cars_ahead", &o.cars_ahead, 0, 20, "in our lane, driving as we do; motion.kind vehicle only");
   parameters.Add("street.light", &o.light, {"day", "night"}, "time of day");
   parameters.Add("street.night_ambient", &o.night_ambient, 0.0, 1.0, "light at night over that of the day");
   parameters.Add("street.head_lamps", &o.head_lamps, 0.0, 1000.0, "radiance of white 1 m ahead, at night");
@@ -63,7 +64,8 @@ Scene MakeStreet(const RoadLine& road, const StreetOptions& options, double came
   AddTrees(task);
   AddPoles(task);
   AddParkedCars(task);
-  AddMovingCars(task, camera_distance_m);
+  AddOncomingCars(task);
+  AddCarsAhead(task, camera_distance_m);
   return builder.Take();
 }
 

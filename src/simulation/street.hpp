@@ -91,7 +91,8 @@ void AddFacades(const StreetTask& task);
 void AddTrees(const StreetTask& task);
 void AddPoles(const StreetTask& task);
 void AddParkedCars(const StreetTask& task);
-void AddMovingCars(const StreetTask& task, const std::function<double(TimeNs)>& camera_distance_m);
+void AddOncomingCars(const StreetTask& task);
+void AddCarsAhead(const StreetTask& task, const std::function<double(TimeNs)>& camera_distance_m);
 
 /// Textures of houses, shared by those along the road and along its side roads.
 class HouseFactory {
@@ -106,7 +107,7 @@ class HouseFactory {
     double depth = 8.0;
     int axes = 3;
   };
-  void Build(const Place& place, Random* random);
+  void Build(Place place, Random* random);
 
  private:
   void AddFront(const Place& place, int upper, int ground, int floors, double tone, Random* random);
@@ -119,6 +120,7 @@ class HouseFactory {
   std::vector<int> uppers_, grounds_, walls_, signs_;
   int roof_ = 0;
   int gable_ = 0;
+  int lit_window_ = 0;
   int plain_ = 0;
 };
 

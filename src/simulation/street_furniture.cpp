@@ -11,8 +11,9 @@ namespace {
 
 constexpr std::uint64_t kTreeStream = 0x74726565;
 constexpr std::uint64_t kPoleStream = 0x706F6C65;
-constexpr double kLampHeight = 6.0;
-constexpr double kLampIntensity = 3.0;
+constexpr double kLampHeight = 7.0;
+constexpr double kLampReach = 2.2;  // over the road
+constexpr double kLampIntensity = 6.0;
 const Eigen::Vector3d kUp(0.0, -1.0, 0.0);
 
 Eigen::Vector3d Level(double angle) { return {std::cos(angle), 0.0, std::sin(angle)}; }
@@ -86,8 +87,8 @@ void AddPoles(const StreetTask& task) {
     const Eigen::Vector3d out = -side * plan.Right(s);
     const Look look = builder.Whole(metal, random.Uniform(0.4, 1.6));
     AddStem(&builder, foot, kLampHeight, 0.14, plan.Heading(s), look);
-    const Eigen::Vector3d head = foot + kLampHeight * kUp + 1.6 * out;
-    builder.Add(foot + kLampHeight * kUp, 1.6 * out, -0.1 * kUp, look, forward);
+    const Eigen::Vector3d head = foot + kLampHeight * kUp + kLampReach * out;
+    builder.Add(foot + kLampHeight * kUp, kLampReach * out, -0.1 * kUp, look, forward);
     Look lamp = builder.Whole(metal);
     if (task.night) {
       lamp.emission = 2.0;

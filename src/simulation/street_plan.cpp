@@ -16,7 +16,7 @@ constexpr double kStep = 0.5;
 
 StreetPlan::StreetPlan(const RoadLine& road, const StreetOptions& options, double camera_height_m)
     : road_(road),
-      layout_{options.road_width_m, options.parking_width_m},
+      layout_{options.road_width_m, options.parking_width_m, options.parked_cars_per_100_m > 0.0},
       pavement_(options.pavement_width_m),
       camera_height_(camera_height_m) {
   for (const double distance : road.crossings()) AddCrossing(distance);

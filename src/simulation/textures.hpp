@@ -11,6 +11,7 @@ namespace evo {
 struct CarriagewayLayout {
   double lanes_m = 7.0;    ///< both lanes
   double parking_m = 2.2;  ///< strip on each side of them
+  bool bays = true;        ///< lines between the places of parked cars
   double width() const { return lanes_m + 2.0 * parking_m; }
 };
 inline constexpr int kRoadWidthTexels = 1024;
@@ -37,6 +38,8 @@ Texture PaintGroundFloor(Random& random);
 Texture PaintWall(Random& random);
 /// A triangle of it on its base with holes beside it, 128 x 64.
 Texture PaintGable(Random& random);
+/// The panes of a window, 64 x 64, with holes where its frame and curtains are.
+Texture PaintLitWindow(Random& random);
 /// 256 x 256 texels of about 3 cm.
 Texture PaintRoof(Random& random);
 
@@ -63,8 +66,9 @@ Texture PaintCarShadow();
 /// Lettering in a frame, 256 x 64; a round or square traffic sign, 64 x 64 with holes around it.
 Texture PaintShopSign(Random& random);
 Texture PaintTrafficSign(Random& random);
-/// High-contrast shapes, 512 x 512; with a picture like a photograph's, 512 x 512; a printed box's side, 256 x 256.
+/// High-contrast shapes, 512 x 512; a few large ones; a picture like a photograph's; a printed box's side, 256 x 256.
 Texture PaintPoster(Random& random);
+Texture PaintPlacard(Random& random);
 Texture PaintPicture(Random& random);
 Texture PaintBoxSide(Random& random);
 /// Of one reflectance with faint noise, 64 x 64.

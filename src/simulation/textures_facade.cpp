@@ -33,8 +33,8 @@ Painter Wall(Random& random, int width, int height) {
     for (int x = 0; x < width; x += kFacadeCell) painter.Rectangle(x, 0, 2, height, reflectance * 0.5);
     for (int y = 0; y < height; y += kFacadeCell / 2) painter.Rectangle(0, y, width, 2, reflectance * 0.5);
   }
-  painter.Noise(random, 64, 128, 5, 0.018, 0.8);
-  painter.Grain(random, 0.015);
+  painter.Noise(random, 64, 128, 5, 0.015, 0.75);
+  painter.Grain(random, 0.01);
   for (int i = 0; i < width / 64; ++i) {  // rain
     painter.TintDown(random.Index(width), random.Index(height), Between(random, 3, 12), Between(random, 40, 120), 0.8,
                      1.0);
@@ -204,6 +204,16 @@ Texture PaintGable(Random& random) {
     painter.Hole(0, y, 63 - y, 1);
     painter.Hole(65 + y, y, 63 - y, 1);
   }
+  return painter.Finish();
+}
+
+Texture PaintLitWindow(Random& random) {
+  Painter painter(64, 64, 0.5);
+  painter.Hole(30, 0, 4, 64);
+  painter.Hole(0, 20, 64, 3);
+  const int curtain = Between(random, 6, 12);
+  painter.Hole(0, 0, curtain, 64);
+  painter.Hole(64 - curtain, 0, curtain, 64);
   return painter.Finish();
 }
 

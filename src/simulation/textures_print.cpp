@@ -82,6 +82,16 @@ Texture PaintPoster(Random& random) {
   return painter.Finish();
 }
 
+Texture PaintPlacard(Random& random) {
+  Painter painter(512, 512, random.Uniform(0.6, 0.85));
+  PaintShapes(random, &painter, 7, 60.0, 160.0);
+  for (int line = 0; line < 3; ++line) {
+    painter.Lettering(random, 40, 60 + 150 * line, 160 + random.Index(280), 36, 0.08);
+  }
+  painter.Outline(0, 0, 512, 512, 8, 0.1);
+  return painter.Finish();
+}
+
 Texture PaintPicture(Random& random) {
   Painter painter(512, 512, 0.4);
   painter.Noise(random, 128, 128, 7, 0.11, 0.72);
@@ -105,7 +115,7 @@ Texture PaintBoxSide(Random& random) {
   for (int line = 0; line < 3; ++line) {
     painter.Lettering(random, 20, 30 + 22 * line, 60 + random.Index(150), 13, DarkOrLight(random));
   }
-  painter.Outline(0, 0, 256, 256, 4, 0.12);
+  painter.Outline(0, 0, 256, 256, 2, 0.15);
   return painter.Finish();
 }
 

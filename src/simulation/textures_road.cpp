@@ -62,8 +62,8 @@ Painter Asphalt(Random& random, int length) {
 // Stones, dirt and wear over everything, markings too.
 Texture Weather(Random& random, Painter* painter) {
   painter->Noise(random, 256, 256, 3, 0.015, 0.8);
-  painter->Noise(random, 32, 64, 4, 0.015, 0.9);
-  painter->Grain(random, 0.035);
+  painter->Noise(random, 32, 64, 4, 0.015, 0.8);
+  painter->Grain(random, 0.02);
   for (int i = 0; i < painter->width() * painter->height() / 8000; ++i) {  // oil, leaves, chewing gum
     const double radius = random.Uniform(1.0, 4.5);
     painter->Ellipse(random.Uniform() * painter->width(), random.Uniform() * painter->height(), radius,
@@ -100,7 +100,7 @@ Texture PaintLanes(Random& random, const CarriagewayLayout& layout, int length) 
   const int bays = std::max(1, static_cast<int>(std::lround(length / texels_per_m / 5.7)));
   const int park = texels(layout.parking_m);
   for (const int x : {park, kRoadWidthTexels - park - line}) MarkRectangle(random, &painter, x, 0, line, length);
-  for (int i = 0; i < bays && park > 2 * line; ++i) {
+  for (int i = 0; i < bays && layout.bays && park > 2 * line; ++i) {
     MarkRectangle(random, &painter, 0, i * length / bays, park, line);
     MarkRectangle(random, &painter, kRoadWidthTexels - park, i * length / bays, park, line);
   }

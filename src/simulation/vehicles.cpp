@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "simulation/street.hpp"
 
@@ -11,13 +10,16 @@ namespace evo {
 namespace {
 
 constexpr std::uint64_t kParkedStream = 0x7061726B;
-constexpr std::uint64_t kMovingStream = 0x6D6F7665;
+constexpr std::uint64_t kOncomingStream = 0x6D6F7665;
+constexpr std::uint64_t kAheadStream = 0x6168656164;
 constexpr double kLength = 4.3;
 constexpr double kWidth = 1.72;
 constexpr double kHeight = 1.5;
 constexpr double kBonnet = 0.87;  // height
 constexpr double kTexelLength = kLength / 512.0;
 constexpr double kTexelHeight = kHeight / 256.0;
+constexpr double kHeadway = 1.3;      // s from car to car
+constexpr double kStandingGap = 7.0;  // m from middle to middle, standing
 
 // Cars of a few shapes, built in a frame on the ground below their middle: x right, y down, z forward.
 class CarFactory {
@@ -42,8 +44,8 @@ class CarFactory {
           {side, 0.0, 0.0});
     }
     for (const double end : {-1.0, 1.0}) {
-      Add({-0.5 * kWidth, -kBonnet, end * front}, {kWidth, 0.0, 0.0}, {0.0, 0.65, 0.0}, ends_[end > 0.0 ? 1 : 0], tone_,
-          {0.0, 0.0, end});
+      Add({end * 0.5 * kWidth, -kBonnet, end * front}, {-end * kWidth, 0.0, 0.0}, {0.0, 0.65, 0.0},
+          ends_[end > 0.0 ? 1 : 0], tone_, {0.0, 0.0, end});
     }
     AddTop(kRears[shape]);
     Add({-0.55 * kWidth, -0.015, 0.52 * kLength}, {1.1 * kWidth, 0.0, 0.0}, {0.0, 0.0, -1.04 * kLength}, shadow_, 1.0,
@@ -138,34 +140,38 @@ void AddParkedCars(const StreetTask& task) {
   }
 }
 
-void AddMovingCars(const StreetTask& task, const std::function<double(TimeNs)>& camera_distance_m) {
-  Random random(task.seed, kMovingStream);
-  const int count = static_cast<int>(std::lround(task.options.moving_cars_per_100_m * task.plan.length() / 100.0));
-  if (count == 0) return;
-  CarFactory cars(&task.builder, task.night, &random);
-  const int ahead = camera_distance_m ? count / 2 : 0;
+void AddOncomingCars(const StreetTask& task) {
+  Random random(task.seed, kOncomingStream);
+  const StreetOptions& options = task.options;
   const double from = task.plan.begin();
   const double length = task.plan.end() - from;
-  const double spacing = length / (count - ahead);
+  const int count = static_cast<int>(std::lround(options.oncoming_cars_per_100_m * length / 100.0));
+  if (count == 0) return;
+  CarFactory cars(&task.builder, task.night, &random);
+  const double spacing = length / count;
   const double first = random.Uniform(0.0, length);
-  const double speed = task.options.moving_car_speed_m_s;
-  const std::shared_ptr<const StreetPlan> plan = task.shared_plan;
   for (int i = 0; i < count; ++i) {
+    const double start = first + (i + random.Uniform(-0.3, 0.3)) * spacing;
     Body body;
-    if (i < count - ahead) {
-      const double start = first + (i + random.Uniform(-0.3, 0.3)) * spacing;
-      body.T_world_body = [=](TimeNs t) {
-        const double passed = std::fmod(start - speed * ToSeconds(t), length);
-        return CarPose(*plan, from + (passed < 0.0 ? passed + length : passed), -0.5 * plan->layout().lanes_m, true);
-      };
-    } else {
-      const double gap = 14.0 * (i - (count - ahead) + 1) + random.Uniform(0.0, 4.0);
-      const double phase = random.Uniform(0.0, 2.0 * std::numbers::pi);
-      body.T_world_body = [=](TimeNs t) {
-        const double sway = 2.0 * std::sin(0.25 * ToSeconds(t) + phase);
-        return CarPose(*plan, camera_distance_m(t) + gap + sway, 0.0, false);
-      };
-    }
+    body.T_world_body = [=, plan = task.shared_plan, speed = options.oncoming_car_speed_m_s](TimeNs t) {
+      const double passed = std::fmod(start - speed * ToSeconds(t), length);
+      return CarPose(*plan, from + (passed < 0.0 ? passed + length : passed), -0.5 * plan->layout().lanes_m, true);
+    };
+    cars.Build(SE3(), task.builder.AddBody(std::move(body)), &random);
+  }
+}
+
+void AddCarsAhead(const StreetTask& task, const std::function<double(TimeNs)>& camera_distance_m) {
+  if (task.options.cars_ahead == 0 || !camera_distance_m) return;
+  Random random(task.seed, kAheadStream);
+  CarFactory cars(&task.builder, task.night, &random);
+  for (int i = 1; i <= task.options.cars_ahead; ++i) {
+    const double gap = kStandingGap * i + random.Uniform(0.0, 2.0);
+    const TimeNs headway = FromSeconds(kHeadway * i);
+    Body body;
+    body.T_world_body = [=, plan = task.shared_plan](TimeNs t) {
+      return CarPose(*plan, camera_distance_m(t + headway) + gap, 0.0, false);
+    };
     cars.Build(SE3(), task.builder.AddBody(std::move(body)), &random);
   }
 }

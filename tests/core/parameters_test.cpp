@@ -48,6 +48,21 @@ TEST_F(ParametersTest, ReadsWhatItPrints) {
   EXPECT_EQ(weight, "huber");
 }
 
+TEST_F(ParametersTest, ReadsBackAnyTextThatItPrints) {
+  std::string text;
+  Parameters texts;
+  texts.Add(
+      "file", &text, [](const std::string&) { return true; }, "path", "a file");
+  EXPECT_NE(texts.ToYaml().find("file: \"\"  # a file"), std::string::npos) << texts.ToYaml();
+  for (const std::string value : {"", "a b.txt", "a: b", "a #b", "#b", "null", "\"q\"", "52,56", "- x", " x "}) {
+    text = value;
+    const std::string printed = texts.ToYaml();
+    text = "other";
+    texts.LoadText(printed, "printed");
+    EXPECT_EQ(text, value) << printed;
+  }
+}
+
 TEST_F(ParametersTest, PrintsEveryKeyOnce) {
   int depth = 3;
   double share = 0.5;

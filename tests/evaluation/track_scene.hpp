@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "evo/geometry/camera.hpp"
+#include "evo/geometry/known_cameras.hpp"
 #include "evo/geometry/trajectory.hpp"
 #include "evo/io/depth_maps.hpp"
 #include "evo/io/mvsec_writer.hpp"
@@ -19,16 +19,7 @@ constexpr TimeNs kMapInterval = 50'000'000;
 inline Camera PlainCamera() { return Camera({Distortion::kRadTan, 201, 151, 100.0, 100.0, 100.0, 75.0, {}}); }
 
 /// The left DAVIS of MVSEC's outdoor_day.
-inline Camera MvsecCamera() {
-  return Camera({Distortion::kEquidistant,
-                 346,
-                 260,
-                 223.994,
-                 223.618,
-                 170.768,
-                 128.187,
-                 {-0.0339044, -0.0153726, -0.0222847, 0.0069204, 0.0}});
-}
+inline Camera MvsecCamera() { return Camera(MvsecDavis346()); }
 
 /// A wall in the world: n . X = 1 with normal / distance n, seen where left <= X <= right.
 struct Wall {

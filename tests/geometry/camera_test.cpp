@@ -4,33 +4,13 @@
 
 #include <cmath>
 
+#include "evo/geometry/known_cameras.hpp"
+
 namespace evo {
 namespace {
 
-Calibration Davis346() {  // MVSEC outdoor_day, left
-  return {Distortion::kEquidistant,
-          346,
-          260,
-          223.9940010790056,
-          223.61783486959376,
-          170.7684322973841,
-          128.18711828338436,
-          {-0.033904378348448685, -0.01537260902537579, -0.022284741346941413, 0.0069204143687187645, 0}};
-}
-
-Calibration Davis240() {  // UZH boxes_6dof
-  return {Distortion::kRadTan,
-          240,
-          180,
-          199.092366542,
-          198.82882047,
-          132.192071378,
-          110.712660011,
-          {-0.368436311798, 0.150947243557, -0.000296130534385, -0.000759431726241, 0.0}};
-}
-
 TEST(Camera, UndistortUndoesDistortOverTheWholeSensor) {
-  for (const auto& calibration : {Davis346(), Davis240()}) {
+  for (const auto& calibration : {MvsecDavis346(), UzhDavis240c()}) {
     const Camera camera(calibration);
     for (int y = 0; y < camera.height(); y += 7) {
       for (int x = 0; x < camera.width(); x += 7) {
@@ -43,7 +23,7 @@ TEST(Camera, UndistortUndoesDistortOverTheWholeSensor) {
 }
 
 TEST(Camera, EquidistantFollowsKannalaBrandt) {
-  const Camera camera(Davis346());
+  const Camera camera(MvsecDavis346());
   const double theta = 0.5;
   const auto& k = camera.calibration().coefficients;
   const double radius = theta + k[0] * std::pow(theta, 3) + k[1] * std::pow(theta, 5) + k[2] * std::pow(theta, 7) +
@@ -54,7 +34,7 @@ TEST(Camera, EquidistantFollowsKannalaBrandt) {
 }
 
 TEST(Camera, RadTanFollowsBrownConrady) {
-  const Camera camera(Davis240());
+  const Camera camera(UzhDavis240c());
   const auto& k = camera.calibration().coefficients;
   const double x = 0.3, y = -0.2, r2 = x * x + y * y;
   const double radial = 1 + k[0] * r2 + k[1] * r2 * r2;
@@ -66,14 +46,14 @@ TEST(Camera, RadTanFollowsBrownConrady) {
 }
 
 TEST(Camera, RefusesPixelsThatNoRayReaches) {
-  Calibration strong = Davis240();
+  Calibration strong = UzhDavis240c();
   strong.coefficients = {-0.8, 0, 0, 0, 0};
   EXPECT_FALSE(Camera(strong).Undistort({5000, 5000}));
-  EXPECT_FALSE(Camera(Davis346()).Undistort({5000, 5000}));
+  EXPECT_FALSE(Camera(MvsecDavis346()).Undistort({5000, 5000}));
 }
 
 TEST(Camera, ContainsCountsPixelCentres) {
-  const Camera camera(Davis240());
+  const Camera camera(UzhDavis240c());
   EXPECT_TRUE(camera.Contains({0, 0}));
   EXPECT_TRUE(camera.Contains({239, 179}));
   EXPECT_FALSE(camera.Contains({239.5, 10}));

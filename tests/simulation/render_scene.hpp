@@ -3,33 +3,14 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "evo/geometry/camera.hpp"
+#include "evo/geometry/known_cameras.hpp"
 #include "evo/simulation/random.hpp"
 #include "evo/simulation/renderer.hpp"
 
 namespace evo {
 
-inline Camera Davis346() {  // MVSEC outdoor_day, left
-  return Camera({Distortion::kEquidistant,
-                 346,
-                 260,
-                 223.9940010790056,
-                 223.61783486959376,
-                 170.7684322973841,
-                 128.18711828338436,
-                 {-0.033904378348448685, -0.01537260902537579, -0.022284741346941413, 0.0069204143687187645, 0}});
-}
-
-inline Camera Davis240() {  // UZH boxes_6dof
-  return Camera({Distortion::kRadTan,
-                 240,
-                 180,
-                 199.092366542,
-                 198.82882047,
-                 132.192071378,
-                 110.712660011,
-                 {-0.368436311798, 0.150947243557, -0.000296130534385, -0.000759431726241, 0.0}});
-}
+inline Camera Davis346() { return Camera(MvsecDavis346()); }
+inline Camera Davis240() { return Camera(UzhDavis240c()); }
 
 inline Texture Plain(float reflectance, float coverage = 1.0F) {
   return Texture(1, 1, {{.reflectance = reflectance, .coverage = coverage}});

@@ -5,10 +5,14 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <regex>
 #include <set>
 #include <string>
 
 #include "evo/core/error.hpp"
+#include "evo/geometry/known_cameras.hpp"
+#include "evo/io/calibration_io.hpp"
 
 namespace evo {
 namespace {
@@ -41,22 +45,6 @@ std::string Refusal(const SceneOptions& options, ErrorKind kind) {
   return "";
 }
 
-TEST(SceneOptions, EveryBundledSceneCanBeMade) {
-  const std::set<std::string> expected{"bumps.yaml",       "driving_day.yaml",    "driving_night.yaml",
-                                       "highway.yaml",     "handheld_boxes.yaml", "slider.yaml",
-                                       "stop_and_go.yaml", "traffic.yaml",        "turns.yaml"};
-  EXPECT_EQ(SceneFiles(), expected);
-  for (const auto& name : SceneFiles()) {
-    SceneOptions options;
-    ASSERT_NO_THROW(Load(name, &options)) << name;
-    const SimulatedRun run = MakeRun(options);
-    EXPECT_GT(run.scene.surfaces.size(), 3u) << name;
-    EXPECT_FALSE(run.scene.bodies.empty()) << name;
-    EXPECT_GE(run.duration, FromSeconds(2.0)) << name;
-    EXPECT_TRUE(run.motion(run.duration).translation().allFinite()) << name;
-  }
-}
-
 TEST(SceneOptions, DrivingDayIsThePapersRun) {
   SceneOptions options;
   Load("driving_day.yaml", &options);
@@ -70,6 +58,84 @@ TEST(SceneOptions, DrivingDayIsThePapersRun) {
     length += (poses[i].T_world_cam.translation() - poses[i - 1].T_world_cam.translation()).norm();
   }
   EXPECT_NEAR(length, 440.0, 10.0);
+}
+
+/// What the scene's head comment gives as its short form; the whole scene where it gives none.
+SimulatedRun ShortForm(const std::string& name) {
+  SceneOptions options;
+  Load(name, &options);
+  const SimulatedRun run = MakeRun(options);
+  std::ifstream file(fs::path(EVO_SOURCE_DIR) / "configs" / "scenes" / name);
+  const std::string text((std::istreambuf_iterator<char>(file)), {});
+  std::smatch match;
+  if (!std::regex_search(text, match, std::regex("Short form: --from (\\d+) --duration (\\d+)"))) return run;
+  return PartOf(run, FromSeconds(std::stod(match[1])), FromSeconds(std::stod(match[2])));
+}
+
+double Speed(const SimulatedRun& run, double t) {
+  return (run.motion(FromSeconds(t + 0.01)).translation() - run.motion(FromSeconds(t)).translation()).norm() / 0.01;
+}
+
+TEST(SceneOptions, EveryBundledSceneHasAShortFormThatHoldsWhatItIsFor) {
+  const std::set<std::string> expected{"bumps.yaml",       "driving_day.yaml",    "driving_night.yaml",
+                                       "highway.yaml",     "handheld_boxes.yaml", "slider.yaml",
+                                       "stop_and_go.yaml", "traffic.yaml",        "turns.yaml"};
+  EXPECT_EQ(SceneFiles(), expected);
+  for (const auto& name : SceneFiles()) {
+    const SimulatedRun run = ShortForm(name);
+    EXPECT_GT(run.scene.surfaces.size(), 3u) << name;
+    EXPECT_GE(run.duration, FromSeconds(2.0)) << name;
+    EXPECT_LE(run.duration, FromSeconds(10.0)) << name;
+    const double seconds = ToSeconds(run.duration);
+    double highest = 0.0, slowest = 1e9, fastest = 0.0;
+    for (double t = 0.0; t < seconds; t += 0.02) {
+      const SE3 pose = run.motion(FromSeconds(t));
+      const SE3 next = run.motion(FromSeconds(t + 0.02));
+      highest = std::max(highest, so3::Log(pose.rotation().conjugate() * next.rotation()).norm() / 0.02);
+      slowest = std::min(slowest, Speed(run, t));
+      fastest = std::max(fastest, Speed(run, t));
+    }
+    const SE3 start = run.motion(0), end = run.motion(run.duration);
+    const double turned = so3::Log(start.rotation().conjugate() * end.rotation()).norm();
+    if (name == "bumps.yaml" || name.starts_with("driving")) {
+      EXPECT_GT(highest, 0.2) << name << ": no bump";
+    }
+    if (name == "stop_and_go.yaml") {
+      EXPECT_LT(slowest, 0.01);
+      EXPECT_GT(Speed(run, 0.0), 2.0);
+      EXPECT_GT(Speed(run, seconds), 2.0);
+    }
+    if (name == "turns.yaml") {
+      EXPECT_NEAR(turned, 1.57, 0.05);
+    }
+    if (name == "highway.yaml") {
+      EXPECT_NEAR(fastest, 15.0, 0.1);
+    }
+  }
+}
+
+TEST(SceneOptions, APartKeepsTheWorldAndThePoses) {
+  SceneOptions options;
+  Load("traffic.yaml", &options);
+  const SimulatedRun run = MakeRun(options);
+  const SimulatedRun part = PartOf(run, FromSeconds(5.0), FromSeconds(3.0));
+  EXPECT_EQ(part.duration, FromSeconds(3.0));
+  EXPECT_EQ(part.motion(FromSeconds(1.0)).translation(), run.motion(FromSeconds(6.0)).translation());
+  ASSERT_GT(run.scene.bodies.size(), 3u);
+  for (std::size_t i = 0; i < run.scene.bodies.size(); ++i) {
+    EXPECT_EQ(part.scene.bodies[i].T_world_body(0).translation(),
+              run.scene.bodies[i].T_world_body(FromSeconds(5.0)).translation());
+  }
+  EXPECT_THROW(PartOf(run, FromSeconds(28.0), FromSeconds(3.0)), Error);
+  EXPECT_THROW(PartOf(run, FromSeconds(28.0), 0), Error);
+}
+
+TEST(SceneOptions, TheDavis346IsThatOfTheBundledCalibration) {
+  const Calibration bundled = ReadCalibration(fs::path(EVO_SOURCE_DIR) / "configs/calibrations/mvsec_outdoor_day.yaml");
+  const Calibration built_in = MvsecDavis346();
+  EXPECT_EQ(bundled.fx, built_in.fx);
+  EXPECT_EQ(bundled.cy, built_in.cy);
+  EXPECT_EQ(bundled.coefficients, built_in.coefficients);
 }
 
 TEST(SceneOptions, SamplesEndWithTheMotion) {

@@ -45,6 +45,10 @@ struct SimulatedRun {
 /// fit together.
 SimulatedRun MakeRun(const SceneOptions& options);
 
+/// `duration` of `run` from `from` on as a run of its own: the same world and poses, time counted from there. Throws
+/// Error(kUsage) if that is nothing or more than `run` has.
+SimulatedRun PartOf(const SimulatedRun& run, TimeNs from, TimeNs duration);
+
 /// `motion` at 0, 1 / hz, 2 / hz, ... and at `duration`.
 Trajectory Sample(const CameraMotion& motion, TimeNs duration, double hz);
 

@@ -18,12 +18,13 @@ struct StreetOptions {
   double trees_per_100_m = 6.0;        ///< both sides together, as of all that follows; none at crossings
   double poles_per_100_m = 4.0;        ///< street lamps, some with traffic signs
   double parked_cars_per_100_m = 6.0;  ///< none if the parking strip is too narrow for a car
-  double moving_cars_per_100_m = 0.5;  ///< of the road's length: oncoming and, if MakeStreet may, ahead
-  double moving_car_speed_m_s = 9.0;   ///< of the oncoming ones
-  std::string light = "day";           ///< or "night": lamps along the road, head lamps, lit windows
-  double night_ambient = 0.02;         ///< Lighting::ambient at night
-  double head_lamps = 12.0;            ///< Lighting::head_lamps at night
-  double lamp_flicker_hz = 120.0;      ///< Lighting::flicker_hz at night
+  double oncoming_cars_per_100_m = 0.5;
+  double oncoming_car_speed_m_s = 9.0;
+  int cars_ahead = 0;              ///< in the camera's lane, driving as it does
+  std::string light = "day";       ///< or "night": lamps along the road, head lamps, lit windows
+  double night_ambient = 0.02;     ///< Lighting::ambient at night
+  double head_lamps = 12.0;        ///< Lighting::head_lamps at night
+  double lamp_flicker_hz = 120.0;  ///< Lighting::flicker_hz at night
 };
 /// Names street.*.
 void Register(Parameters& parameters, StreetOptions& options);
@@ -31,8 +32,9 @@ void Register(Parameters& parameters, StreetOptions& options);
 /// A street along `road` for a camera `camera_height_m` above it, from the seed: carriageway, kerbs, pavements, side
 /// roads at the crossings, houses, trees, poles, cars, all of planar pieces; a little of it behind the start and past
 /// the end. Textures of about 1 cm near the road and 2.5 cm above. Nothing static but the road comes nearer than 1 m to
-/// the camera's path. With `camera_distance_m` (the camera's place on the road over time) half of the moving cars drive
-/// ahead of the camera in its lane; else all come the other way. They come back at the street's other end.
+/// the camera's path. Oncoming cars come back at the street's other end. Cars ahead need `camera_distance_m`, the
+/// camera's place on the road over time: each is where the camera will be 1.3 s later than the car behind it, and 7 m
+/// further.
 Scene MakeStreet(const RoadLine& road, const StreetOptions& options, double camera_height_m, std::uint64_t seed,
                  const std::function<double(TimeNs)>& camera_distance_m = {});
 
@@ -40,7 +42,8 @@ Scene MakeStreet(const RoadLine& road, const StreetOptions& options, double came
 /// camera starts in its middle looking along +z.
 Scene MakeRoom(std::uint64_t seed);
 
-/// Posters at three depths (0.8 m to 2.5 m) before a camera on a slider, in the style of slider_depth.
+/// A table with boxes at 0.4 m, 0.7 m and 1 m before a wall with posters at 1.4 m, for a camera on a slider that goes
+/// 1 m to the right, in the style of slider_depth.
 Scene MakeSliderScene(std::uint64_t seed);
 
 }  // namespace evo
