@@ -10,6 +10,7 @@
 #include "app/output_folder.hpp"
 #include "app/run_record.hpp"
 #include "app/sequence_output.hpp"
+#include "app/staged_folder.hpp"
 #include "evo/core/error.hpp"
 #include "evo/core/format.hpp"
 #include "evo/simulation/scene_options.hpp"
@@ -44,13 +45,14 @@ struct SimulateConfig {
   Parameters parameters;
 };
 
-TimeNs Duration(const SimulateArguments& arguments, const SimulatedRun& run) {
+TimeNs Duration(const SimulateArguments& arguments, const SceneOptions& scene, const SimulatedRun& run) {
   if (!arguments.duration_s) return run.duration;
   const TimeNs duration = FromSeconds(*arguments.duration_s);
   if (duration <= run.duration) return duration;
-  throw Error(ErrorKind::kUsage, "--duration: the motion ends after " + FormatTime(run.duration) +
-                                     " s; give less, or raise duration_s of "
-                                     "motion.vehicle, motion.handheld or motion.slider");
+  const std::string longer =
+      scene.motion == "file" ? "give a longer trajectory" : "raise motion." + scene.motion + ".duration_s";
+  throw Error(ErrorKind::kUsage,
+              "--duration: the motion ends after " + FormatTime(run.duration) + " s; ask for less, or " + longer);
 }
 
 void PrintSummary(const std::string& name, const Camera& camera, const Trajectory& poses,
@@ -76,12 +78,48 @@ void PrintFiles(const fs::path& out, const std::vector<std::string>& names) {
     std::cout << "file       " << path.string()
               << Format(", %.1f MB\n", 1e-6 * static_cast<double>(fs::file_size(path)));
   }
+  std::cout << "results    " << out.string() << '\n';
 }
+
+/// What is to be made, checked.
+struct Order {
+  Order(const SimulateArguments& arguments, const SimulateConfig& config)
+      : format(arguments.format == "uzh" ? SequenceFormat::kUzh : SequenceFormat::kMvsec) {
+    const SimulationOptions& simulation = config.scene.simulation;
+    if (arguments.out.empty()) {
+      throw Error(ErrorKind::kUsage, "simulate: --out is required; see evo-run simulate --help");
+    }
+    if (arguments.preview_every_s > 0.0 && simulation.image_hz == 0.0) {
+      throw Error(ErrorKind::kUsage, "--preview-every shows images, but simulation.image_hz is 0; raise it");
+    }
+    if (config.output.flow && simulation.depth_hz == 0.0) {
+      throw Error(ErrorKind::kConfiguration, "output.flow comes with the depth maps, but simulation.depth_hz is 0; raise it");
+    }
+    const std::string scene_file = arguments.common.config_file;
+    place = scene_file.empty() ? "simulate" : scene_file;
+    name = scene_file.empty() ? config.scene.kind : fs::path(scene_file).stem().string();
+    auto results = SequenceResultNames(format, name);
+    results.emplace_back("manifest.json");
+    CheckOutputFolder(arguments.out, results, arguments.common.force);
+  }
+
+  SequenceFormat format;
+  std::string place;  ///< that errors name
+  std::string name;   ///< of the sequence
+};
 
 void AddInputs(const SimulateArguments& arguments, const SceneOptions& scene, RunRecord* record) {
   if (!arguments.common.config_file.empty()) record->AddInput("scene", arguments.common.config_file);
   if (scene.motion == "file") record->AddInput("motion", scene.motion_file);
   if (fs::is_regular_file(scene.calibration)) record->AddInput("calibration", scene.calibration);
+}
+
+void AddCounts(const SimulationCounts& counts, RunRecord* record) {
+  record->AddCount("events", counts.events);
+  record->AddCount("positive_events", counts.positive);
+  record->AddCount("images", counts.images);
+  record->AddCount("depth_maps", counts.depth_maps);
+  record->AddCount("pixel_renders", counts.pixel_renders);
 }
 
 void RunSimulate(const SimulateArguments& arguments, const std::vector<std::string>& command_line) {
@@ -92,29 +130,19 @@ void RunSimulate(const SimulateArguments& arguments, const std::vector<std::stri
     std::cout << config.parameters.ToYaml();
     return;
   }
-  if (arguments.out.empty()) throw Error(ErrorKind::kUsage, "simulate: --out is required; see evo-run simulate --help");
-  if (arguments.preview_every_s > 0.0 && config.scene.simulation.image_hz == 0.0) {
-    throw Error(ErrorKind::kUsage, "--preview-every shows images, but simulation.image_hz is 0; raise it");
-  }
-  const std::string scene_file = arguments.common.config_file;
-  const std::string name = scene_file.empty() ? config.scene.kind : fs::path(scene_file).stem().string();
-  const auto format = arguments.format == "uzh" ? SequenceFormat::kUzh : SequenceFormat::kMvsec;
-  const auto results = SequenceResultNames(format, name);
-  auto checked = results;
-  checked.emplace_back("manifest.json");
-  CheckOutputFolder(arguments.out, checked, arguments.common.force);
-
-  const SimulatedRun run =
-      NamingPlace(scene_file.empty() ? "simulate" : scene_file, [&] { return MakeRun(config.scene); });
-  const TimeNs duration = Duration(arguments, run);
+  const Order order(arguments, config);
+  const SimulatedRun run = NamingPlace(order.place, [&] { return MakeRun(config.scene); });
+  const TimeNs duration = Duration(arguments, config.scene, run);
   const Trajectory poses = Sample(run.motion, duration, config.output.pose_hz);
   RunRecord record(command_line, config.parameters);
   AddInputs(arguments, config.scene, &record);
-  if (arguments.common.force) RemoveSequenceImages(arguments.out);
+
   const InterruptGuard guard(arguments.out);
   ThreadPool pool(arguments.common.threads);
-  const auto output = MakeSequenceOutput(format, arguments.out, name, run.camera, poses, config.output);
-  PreviewOutput preview(output.get(), arguments.out / "preview", FromSeconds(arguments.preview_every_s));
+  StagedFolder staged(arguments.out);
+  const auto output = MakeSequenceOutput(order.format, staged.path(), order.name, run, poses, config.output,
+                                         config.scene.simulation.depth_hz > 0.0, &pool);
+  PreviewOutput preview(output.get(), staged.path() / "preview", FromSeconds(arguments.preview_every_s));
   SimulationSink* const sink = arguments.preview_every_s > 0.0 ? static_cast<SimulationSink*>(&preview) : output.get();
   const SimulationCounts counts = record.Time("simulate", [&] {
     Progress progress("simulate", !arguments.common.quiet);
@@ -122,14 +150,12 @@ void RunSimulate(const SimulateArguments& arguments, const std::vector<std::stri
                     static_cast<std::uint64_t>(config.scene.seed), &pool, &progress, sink);
   });
   output->Commit();
-  record.AddCount("events", counts.events);
-  record.AddCount("positive_events", counts.positive);
-  record.AddCount("images", counts.images);
-  record.AddCount("depth_maps", counts.depth_maps);
-  record.AddCount("pixel_renders", counts.pixel_renders);
-  WriteManifest(arguments.out / "manifest.json", record.manifest);
-  PrintSummary(name, run.camera, poses, counts, record.manifest.stages.back().seconds, pool.size());
-  PrintFiles(arguments.out, results);
+  AddCounts(counts, &record);
+  WriteManifest(staged.path() / "manifest.json", record.manifest);
+  if (arguments.common.force) RemoveSequence(arguments.out, order.format, order.name);
+  staged.Commit();
+  PrintSummary(order.name, run.camera, poses, counts, record.manifest.stages.back().seconds, pool.size());
+  PrintFiles(arguments.out, SequenceResultNames(order.format, order.name));
 }
 
 }  // namespace
@@ -148,10 +174,10 @@ Command AddSimulateCommand(CLI::App& app) {
       ->check(CLI::Range(0, std::numeric_limits<int>::max()).description(""))
       ->type_name("N");
   parser->add_option("--duration", arguments->duration_s, "end after this many seconds of the scene")
-      ->check(CLI::Range(0.001, 1e6).description(""))
+      ->check(NumberBetween(0.001, 1e6))
       ->type_name("S");
   parser->add_option("--preview-every", arguments->preview_every_s, "draw image and events every S seconds")
-      ->check(CLI::Range(0.001, 1e6).description(""))
+      ->check(NumberBetween(0.001, 1e6))
       ->type_name("S");
   parser->add_flag("--print", arguments->print, "print every parameter of the scene and its meaning as YAML instead");
   AddSettingOptions(*parser, arguments->common);
