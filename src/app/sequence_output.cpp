@@ -25,8 +25,8 @@ Trajectory Shifted(Trajectory poses, TimeNs offset) {
 /// A _gt.hdf5: poses, true depth and, where asked for, flow.
 class GroundTruthOutput {
  public:
-  GroundTruthOutput(const fs::path& path, const SimulatedRun& run, const Trajectory& poses, bool with_flow, TimeNs start,
-                    ThreadPool* pool)
+  GroundTruthOutput(const fs::path& path, const SimulatedRun& run, const Trajectory& poses, bool with_flow,
+                    TimeNs start, ThreadPool* pool)
       : motion_(run.motion),
         rectified_(Rectified(run.camera.calibration())),
         rectified_depth_(run.scene, rectified_, pool),
@@ -40,7 +40,8 @@ class GroundTruthOutput {
     DepthMap rectified = rectified_depth_.At(t, T_world_cam);
     file_.AppendRectifiedDepth(start_ + t, rectified);
     if (with_flow_ && last_) {
-      file_.AppendFlow(start_ + last_->t, StaticFlow(rectified_, last_->depth, T_world_cam.Inverse() * last_->T_world_cam));
+      file_.AppendFlow(start_ + last_->t,
+                       StaticFlow(rectified_, last_->depth, T_world_cam.Inverse() * last_->T_world_cam));
     }
     if (with_flow_) last_ = {t, T_world_cam, std::move(rectified)};
   }

@@ -75,8 +75,9 @@ void PrintFiles(const fs::path& out, const std::vector<std::string>& names) {
   for (const auto& name : names) {
     const fs::path path = out / name;
     if (!fs::is_regular_file(path)) continue;
+    const auto bytes = static_cast<double>(fs::file_size(path));
     std::cout << "file       " << path.string()
-              << Format(", %.1f MB\n", 1e-6 * static_cast<double>(fs::file_size(path)));
+              << Format(bytes < 1e6 ? ", %.1f kB\n" : ", %.1f MB\n", bytes < 1e6 ? 1e-3 * bytes : 1e-6 * bytes);
   }
   std::cout << "results    " << out.string() << '\n';
 }
@@ -93,7 +94,8 @@ struct Order {
       throw Error(ErrorKind::kUsage, "--preview-every shows images, but simulation.image_hz is 0; raise it");
     }
     if (config.output.flow && simulation.depth_hz == 0.0) {
-      throw Error(ErrorKind::kConfiguration, "output.flow comes with the depth maps, but simulation.depth_hz is 0; raise it");
+      throw Error(ErrorKind::kConfiguration,
+                  "output.flow comes with the depth maps, but simulation.depth_hz is 0; raise it");
     }
     const std::string scene_file = arguments.common.config_file;
     place = scene_file.empty() ? "simulate" : scene_file;

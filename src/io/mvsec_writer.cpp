@@ -26,7 +26,7 @@ double NearestSeconds(TimeNs t) {
 class Hdf5Output {
  public:
   explicit Hdf5Output(const std::filesystem::path& path) : pending_(path) {
-    hdf5::Silence();
+    hdf5::SetUp();
     file_ = Checked(H5Fcreate(pending_.temporary().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
     with_groups_ = hdf5::Handle(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
     H5Pset_create_intermediate_group(with_groups_.get(), 1);
@@ -81,8 +81,8 @@ class Hdf5Output {
 
   void Check(bool good) const {
     if (good) return;
-    throw Error(ErrorKind::kOutput, pending_.path().string() + ": writing failed: " + hdf5::LastFailure() +
-                                        "; is the folder writable and the disk not full?");
+    throw Error(ErrorKind::kOutput,
+                pending_.path().string() + ": writing failed: " + hdf5::LastFailure() + "; is the disk full?");
   }
 
  private:

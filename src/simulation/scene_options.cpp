@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kViewAhead = 250.0;  // m of road beyond the end of the drive, so that the street is never seen to end
 
-constexpr double kMostPixels = 4e6;    // four times the largest event camera, at some 150 bytes each
+constexpr double kMostPixels = 4e6;  // four times the largest event camera, at some 150 bytes each
 
 /// Left DAVIS346 of MVSEC's outdoor_day and the DAVIS240C of UZH's boxes and slider sequences, as published.
 const Calibration kDavis346{
@@ -93,7 +93,8 @@ void Register(Parameters& p, SceneOptions& o) {
   p.Add("motion.kind", &o.motion, {"vehicle", "handheld", "slider", "file"}, "of the camera");
   p.Add("motion.file", &o.motion_file, any, "path", "trajectory for kind: file (TUM text)");
   const auto named = [](const std::string& text) { return !text.empty(); };
-  p.Add("scene.calibration", &o.calibration, named, "davis346, davis240c or the path of a calibration", "of the camera");
+  p.Add("scene.calibration", &o.calibration, named, "davis346, davis240c or the path of a calibration",
+        "of the camera");
   p.Add("road.shape", &o.road_shape, {"straight", "curved", "turns"}, "turns: at right angles");
   p.Add("road.length_m", &o.road_length_m, 0.0, 1e5, "0: what the motion needs (m)");
   p.Add("road.slope", &o.road_slope, 0.0, 0.3, "steepest of the hills (rise over run)");

@@ -24,6 +24,9 @@ constexpr char kSmallCamera[] =
     "cam0:\n  camera_model: pinhole\n  intrinsics: [90, 90, 60, 45]\n  distortion_model: radtan\n"
     "  distortion_coeffs: [-0.2, 0.05, 0.001, -0.001]\n  resolution: [120, 90]\n";
 
+/// The largest file that the shell allows stands for the full disk.
+constexpr char kFullDisk[] = "trap '' XFSZ; ulimit -f 16;";
+
 class SimulateCommandTest : public EvoRunTest {
  protected:
   static fs::path SceneFile(const std::string& name) { return fs::path(EVO_SOURCE_DIR) / "configs" / "scenes" / name; }
@@ -72,7 +75,9 @@ TEST_F(SimulateCommandTest, MvsecSequencesHoldWhatThePublishedOnesDo) {
   EXPECT_EQ(CountFiles(folder / "a"), 4);
   const hdf5::File data(folder / "a" / "slider_data.hdf5");
   const hdf5::File truth(folder / "a" / "slider_gt.hdf5");
-  const auto shape = [](const hdf5::File& file, const std::string& name) { return file.Open("davis/left/" + name).shape(); };
+  const auto shape = [](const hdf5::File& file, const std::string& name) {
+    return file.Open("davis/left/" + name).shape();
+  };
   using Shape = std::vector<hsize_t>;
   EXPECT_EQ(shape(data, "image_raw"), (Shape{3, 90, 120}));
   EXPECT_EQ(shape(data, "image_raw_ts"), (Shape{3}));
@@ -87,9 +92,8 @@ TEST_F(SimulateCommandTest, MvsecSequencesHoldWhatThePublishedOnesDo) {
 
 TEST_F(SimulateCommandTest, UzhSequencesHoldWhatThePublishedOnesDo) {
   ASSERT_EQ(Run(Small("slider", "u") + "--format uzh --duration 0.12 --preview-every 0.1"), 0) << err;
-  for (const char* name :
-       {"events.txt", "groundtruth.txt", "calib.txt", "images.txt", "images/frame_00000002.png", "depth_gt.hdf5",
-        "preview/frame_0000.100s.png", "manifest.json"}) {
+  for (const char* name : {"events.txt", "groundtruth.txt", "calib.txt", "images.txt", "images/frame_00000002.png",
+                           "depth_gt.hdf5", "preview/frame_0000.100s.png", "manifest.json"}) {
     EXPECT_TRUE(fs::exists(folder / "u" / name)) << name;
   }
   EXPECT_EQ(CountFiles(folder / "u"), 11);
@@ -99,48 +103,209 @@ TEST_F(SimulateCommandTest, UzhSequencesHoldWhatThePublishedOnesDo) {
 }
 
 TEST_F(SimulateCommandTest, SameBytesForAnyNumberOfThreads) {
-  ExpectSameBytesForAnyThreads(Small("driving_night", "result") + "--duration 0.06 ");
+  ExpectSameBytesForAnyThreads(Small("driving_night", "result") +
+                               "--set motion.vehicle.duration_s=4 --set motion.vehicle.start_at_rest_s=0 "
+                               "--set output.flow=true --duration 0.06 ");
 }
 
 TEST_F(SimulateCommandTest, SameTextForAnyNumberOfThreads) {
   ExpectSameBytesForAnyThreads(Small("handheld_boxes", "result") + "--format uzh --duration 0.11 ");
 }
 
-/// The oracle of evaluate --tracks against points of the scene whose places are known from its making: tracks that
-/// follow them exactly, as long as nothing hides them, have no error and their full age.
+/// Where points of the scene truly are, found by one ray at a time in double precision: tracks that begin on places
+/// that lie on one surface with what is around them, and end where another surface hides them.
+Tracks FollowPoints(const SimulatedRun& run, int count, TimeNs end) {
+  constexpr TimeNs kStep = 20'500'000;
+  Random random(3);
+  const auto surface_at = [&](const Eigen::Vector2d& pixel, TimeNs t, double* depth) {
+    const auto ray = run.camera.Contains(pixel) ? run.camera.Undistort(pixel) : std::nullopt;
+    const Hit hit = ray ? CastRay(run.scene, *ray, t, run.motion(t)) : Hit();
+    if (depth) *depth = hit.depth;
+    return hit.surface;
+  };
+  Tracks tracks;
+  for (int id = 0; id < count; ++id) {
+    const TimeNs start = random.Index(10) * kStep;
+    const Eigen::Vector2d first(random.Uniform(5.0, run.camera.width() - 6.0),
+                                random.Uniform(5.0, run.camera.height() - 6.0));
+    double depth = 0.0;
+    const int surface = surface_at(first, start, &depth);
+    bool inside = surface >= 0;
+    for (const Eigen::Vector2d& side : {Eigen::Vector2d(2, 2), {2, -2}, {-2, 2}, {-2, -2}}) {
+      inside = inside && surface_at(first + side, start, nullptr) == surface;
+    }
+    if (!inside) continue;
+    const Eigen::Vector3d point = run.motion(start) * (depth * run.camera.Undistort(first)->homogeneous());
+    for (TimeNs t = start; t <= end; t += kStep) {
+      const Eigen::Vector2d pixel = run.camera.Project(run.motion(t).Inverse() * point);
+      if (surface_at(pixel, t, nullptr) != surface) break;
+      tracks.push_back({id, t, pixel.x(), pixel.y()});
+    }
+  }
+  return tracks;
+}
+
+/// The oracle of evaluate --tracks against points whose places are known from the making of the scene.
 TEST_F(SimulateCommandTest, PointsOfTheSceneAreTracksWithoutError) {
-  ASSERT_EQ(Run(Small("handheld_boxes", "room") + "--duration 1.6 --set output.start_s=0"), 0) << err;
+  ASSERT_EQ(Run(Small("handheld_boxes", "room") + "--duration 1 --set output.start_s=0 --set simulation.samples=1"), 0)
+      << err;
   SceneOptions options;
   Parameters parameters;
   Register(parameters, options);
   parameters.LoadFile(SceneFile("handheld_boxes.yaml"));
   options.calibration = Path("camera.yaml");
-  const SimulatedRun run = MakeRun(options);
-  Random random(3);
-  Tracks tracks;
-  for (int id = 0; id < 150; ++id) {
-    const int index = random.Index(static_cast<int>(run.scene.surfaces.size()));
-    const Surface& surface = run.scene.surfaces[static_cast<std::size_t>(index)];
-    const double a = random.Uniform(0.0, 1.0);
-    const Eigen::Vector3d point = surface.origin + a * surface.edge_u + random.Uniform(0.0, 1.0) * surface.edge_v;
-    for (TimeNs t = 0; t <= FromSeconds(1.55); t += 15'500'000) {
-      const SE3 T_world_cam = run.motion(t);
-      const Eigen::Vector3d seen = T_world_cam.Inverse() * point;
-      if (!(seen.z() > 0.1)) break;
-      const Eigen::Vector2d pixel = run.camera.Project(seen);
-      const auto ray = run.camera.Contains(pixel) ? run.camera.Undistort(pixel) : std::nullopt;
-      if (!ray || CastRay(run.scene, *ray, t, T_world_cam).surface != index) break;
-      tracks.push_back({id, t, pixel.x(), pixel.y()});
-    }
-  }
-  WriteTracks(folder / "tracks.txt", tracks);
+  WriteTracks(folder / "tracks.txt", FollowPoints(MakeRun(options), 100, FromSeconds(0.99)));
   ASSERT_EQ(Run("evaluate --no-plots --tracks " + Quote(folder / "tracks.txt") + " --ground-truth " +
                 Quote(folder / "room" / "handheld_boxes_gt.hdf5") + " --calibration " + Quote(folder / "camera.yaml") +
                 " --out " + Quote(folder / "quality")),
             0)
       << err;
-  printf("%s", out.c_str());
-  printf("%s", ReadFile(folder / "quality" / "track_quality.csv").substr(0, 3000).c_str());
+  const std::string csv = ReadFile(folder / "quality" / "track_quality.csv");
+  const auto value = [&](const std::string& row) {
+    const auto place = csv.find("\n" + row);
+    return place == std::string::npos ? NAN : std::stod(csv.substr(csv.rfind(',', csv.find('\n', place + 1)) + 1));
+  };
+  EXPECT_GT(value("tracks_judged,"), 50.0);
+  EXPECT_LT(value("error_median,px,1."), 0.001);
+  EXPECT_LT(value("error_max,px,1."), 0.05);
+  EXPECT_GT(value("expected_feature_age_normalized,share,1."), 0.95);
+}
+
+/// What a run that fails must leave: the folder as it was.
+class SimulateFailureTest : public SimulateCommandTest {
+ protected:
+  /// Starts a long run, ends it with `signal` once it writes, and returns how it ended.
+  int Interrupt(const std::string& format, int signal) {
+    const std::string scene = SceneFile("slider.yaml");
+    const std::string result = Path("result");
+    const pid_t child = ::fork();
+    if (child == 0) {
+      const int null = ::open("/dev/null", O_WRONLY);
+      ::dup2(null, STDOUT_FILENO);
+      ::dup2(null, STDERR_FILENO);
+      ::execl(EVO_RUN, EVO_RUN, "simulate", scene.c_str(), "--format", format.c_str(), "--out", result.c_str(), "--set",
+              "motion.slider.duration_s=600", "--preview-every", "0.05", static_cast<char*>(nullptr));
+      ::_exit(1);
+    }
+    for (int i = 0; i < 3000 && CountFiles(result) < 4; ++i) ::usleep(10'000);
+    EXPECT_GE(CountFiles(result), 4);
+    ::kill(child, signal);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    return status;
+  }
+};
+
+TEST_F(SimulateFailureTest, InterruptedItLeavesNothing) {
+  for (const char* format : {"mvsec", "uzh"}) {
+    for (const int signal : {SIGINT, SIGTERM}) {
+      const int status = Interrupt(format, signal);
+      EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal) << format << ' ' << status;
+      EXPECT_EQ(CountFiles(folder / "result"), 0) << format;
+    }
+  }
+}
+
+TEST_F(SimulateFailureTest, OnAFullDiskItLeavesNothing) {
+  for (const char* format : {"mvsec", "uzh"}) {
+    EXPECT_EQ(Refusal(Small("slider", "result") + "-q --duration 0.3 --format " + format, kFullDisk), 8);
+    EXPECT_NE(err.find("disk full"), std::string::npos) << err;
+    EXPECT_FALSE(fs::exists(folder / "result"));
+  }
+}
+
+TEST_F(SimulateFailureTest, EarlierResultsStayUntilTheNewOnesAreWhole) {
+  const std::string words = Small("slider", "result") + "-q --format uzh --duration 0.06 --preview-every 0.05 ";
+  ASSERT_EQ(Run(words + "--set simulation.depth_hz=100"), 0) << err;
+  const auto before = Checksums("result");
+  EXPECT_EQ(Refusal(words), 8);
+  EXPECT_NE(err.find("--force"), std::string::npos) << err;
+  EXPECT_EQ(Refusal(words + "--force", kFullDisk), 8);
+  EXPECT_EQ(Checksums("result"), before);
+  Write("result/notes.txt", "kept");
+  Write("result/images/mine.png", "kept");
+  ASSERT_EQ(Run(words + "--force --set simulation.depth_hz=0 --set simulation.image_hz=10"), 0) << err;
+  const auto after = Checksums("result");
+  EXPECT_FALSE(after.contains("depth_gt.hdf5"));
+  EXPECT_FALSE(after.contains("images/frame_00000001.png"));
+  EXPECT_TRUE(after.contains("notes.txt") && after.contains("images/mine.png"));
+}
+
+TEST_F(SimulateFailureTest, AnOutputThatCannotBeIsRefused) {
+  Write("file", "in the way");
+  EXPECT_EQ(Refusal(Small("slider", "file")), 8);
+  EXPECT_EQ(Refusal(Small("slider", "file/result")), 8);
+  EXPECT_EQ(Refusal("simulate " + Quote(SceneFile("slider.yaml"))), 2);
+  EXPECT_NE(err.find("--out"), std::string::npos) << err;
+}
+
+TEST_F(SimulateFailureTest, BadScenesAreRefused) {
+  const auto expect = [&](const std::string& text, const std::string& part) {
+    ExpectRefusal("simulate " + Quote(Write("scene.yaml", text)), 3, part);
+    EXPECT_NE(err.find("scene.yaml"), std::string::npos) << err;
+  };
+  expect("scene:\n  knd: room\n", "scene.yaml:2: unknown parameter 'scene.knd'; did you mean 'scene.kind'?");
+  expect("scene:\n  seed: many\n", "scene.yaml:2: 'scene.seed' is 'many' but must be a whole number");
+  expect("scene:\n  kind: sea\n", "street, room, slider");
+  expect("sensor:\n  threshold_on: 99\n", "must be a number in");
+  expect("sensor:\n  threshold_on: .nan\n", "must be a number in");
+  expect("scene:\n  seed: 1\n  seed: 2\n", "scene.yaml:3: 'scene.seed' comes twice");
+  expect("a: [1,\n", "not valid YAML");
+  expect("- 1\n", "'name: value'");
+  expect("", "empty file");
+  expect(std::string("\x7F"
+                     "ELF\0\0",
+                     6),
+         "no text");
+  expect("scene:\n  kind: room\n", "has no road");
+  ExpectRefusal("simulate " + Quote(folder / "absent.yaml"), 3, "absent.yaml: cannot read");
+  ExpectRefusal("simulate " + Quote(folder), 3, "is a folder");
+}
+
+TEST_F(SimulateFailureTest, BadOptionsAreRefused) {
+  const std::string words = "simulate " + Quote(SceneFile("slider.yaml"));
+  for (const char* duration : {"0", "-1", "nan", "inf", "1e9", "soon"}) {
+    ExpectRefusal(words + " --duration=" + duration, 2, std::string("'") + duration + "' is not a number from 0.001");
+  }
+  ExpectRefusal(words + " --duration 100", 2, "raise motion.slider.duration_s");
+  ExpectRefusal(words + " --format hdf4", 2, "--format");
+  ExpectRefusal(words + " --seed=-1", 2, "--seed");
+  ExpectRefusal(words + " --preview-every nan", 2, "--preview-every");
+  ExpectRefusal(words + " --preview-every 1 --set simulation.image_hz=0", 2, "simulation.image_hz");
+  ExpectRefusal(words + " --set output.flow=true --set simulation.depth_hz=0", 3, "simulation.depth_hz");
+  ExpectRefusal(words + " --format uzh --set scene.calibration=davis346", 3, "write a camchain instead");
+}
+
+TEST_F(SimulateFailureTest, BadCalibrationsAreRefused) {
+  const auto expect = [&](const std::string& calibration, int code, const std::string& part) {
+    ExpectRefusal("simulate --set scene.calibration=" + Quote(calibration), code, part);
+  };
+  expect(Path("absent.yaml"), 4, "absent.yaml: no such file");
+  expect("", 3, "scene.calibration");
+  expect(Write("empty.yaml", ""), 4, "empty file");
+  std::string huge = kSmallCamera;
+  huge.replace(huge.find("[120, 90]"), 9, "[60000, 60000]");
+  expect(Write("huge.yaml", huge), 4, "huge.yaml: a sensor of 60000 x 60000 px is too large");
+}
+
+TEST_F(SimulateFailureTest, BadMotionFilesAreRefused) {
+  const auto expect = [&](const std::string& poses, int code, const std::string& part, const std::string& more = "") {
+    ExpectRefusal("simulate --set scene.kind=room --set motion.kind=file --set motion.file=" +
+                      Quote(Write("motion.txt", poses)) + more,
+                  code, part);
+  };
+  const std::string first = "0 0 0 0 0 0 0 1\n";
+  const std::string second = "1 0 0 1 0 0 0 1\n";
+  expect("", 4, "empty file");
+  expect(first, 4, "a single pose is no motion");
+  expect(second + first, 4, "motion.txt:2: the stamp");
+  expect(first + first, 4, "motion.txt:2: the stamp");
+  expect(first + "1 nan 0 0 0 0 0 1\n", 4, "motion.txt:2: 'nan'");
+  expect(first + "1 0 0 0 0 0 0 2\n", 4, "motion.txt:2: the quaternion");
+  expect(first + second, 2, "give a longer trajectory", " --duration 2");
+  ExpectRefusal("simulate --set scene.kind=room --set motion.kind=file", 3, "motion.file names none");
+  ExpectRefusal("simulate --set scene.kind=room --set motion.kind=file --set motion.file=" + Quote(folder), 4,
+                "folder");
 }
 
 }  // namespace

@@ -42,9 +42,9 @@ class MovingEdge : public ::testing::TestWithParam<std::pair<float, float>> {
  protected:
   static constexpr double kFocal = 60.0;
   static constexpr double kDepth = 2.0;
-  static constexpr double kSpeed = 1.0;                                  // m/s
+  static constexpr double kSpeed = 1.0;                                 // m/s
   static constexpr double kPixelsPerSecond = kFocal * kSpeed / kDepth;  // 30
-  static constexpr double kEdge = 0.45;                                  // m, at the start: 13.5 px right of the axis
+  static constexpr double kEdge = 0.45;                                 // m, at the start: 13.5 px right of the axis
 
   MovingEdge() {
     const auto [left, right] = GetParam();
