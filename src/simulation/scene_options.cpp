@@ -91,7 +91,7 @@ void Register(Parameters& p, SceneOptions& o) {
   p.Add("scene.seed", &o.seed, 0, std::numeric_limits<int>::max(), "of all that is left to chance");
   p.Add("scene.kind", &o.kind, {"street", "room", "slider"}, "the world");
   p.Add("motion.kind", &o.motion, {"vehicle", "handheld", "slider", "file"}, "of the camera");
-  p.Add("motion.file", &o.motion_file, any, "path", "trajectory for kind: file (TUM text)");
+  p.Add("motion.file", &o.motion_file, any, "path", "trajectory for kind: file (TUM text), gaps are bridged smoothly");
   const auto named = [](const std::string& text) { return !text.empty(); };
   p.Add("scene.calibration", &o.calibration, named, "davis346, davis240c or the path of a calibration",
         "of the camera");

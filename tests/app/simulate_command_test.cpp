@@ -38,6 +38,17 @@ class SimulateCommandTest : public EvoRunTest {
            Quote(folder / result) + " ";
   }
 
+  /// What Small simulates.
+  SimulatedRun RunOf(const std::string& scene, const std::string& setting = "") const {
+    SceneOptions options;
+    Parameters parameters;
+    Register(parameters, options);
+    parameters.LoadFile(SceneFile(scene + ".yaml"));
+    if (!setting.empty()) parameters.Set(setting);
+    options.calibration = Path("camera.yaml");
+    return MakeRun(options);
+  }
+
   /// Must be refused with this exit code and a line that holds `part`, and leave no file in result.
   void ExpectRefusal(const std::string& words, int code, const std::string& part, const std::string& before = "") {
     EXPECT_EQ(Refusal(words + " --out " + Quote(folder / "result"), before), code) << words << '\n' << err;
@@ -88,6 +99,35 @@ TEST_F(SimulateCommandTest, MvsecSequencesHoldWhatThePublishedOnesDo) {
   EXPECT_EQ(shape(truth, "flow_dist"), (Shape{2, 2, 90, 120}));
   EXPECT_EQ(shape(truth, "flow_dist_ts"), (Shape{2}));
   EXPECT_EQ(ReadCalibration(folder / "a" / "camchain-imucam-slider.yaml").width, 120);
+}
+
+/// Depth and flow of the rectified image against single rays and the projection of the points that they meet.
+TEST_F(SimulateCommandTest, RectifiedMapsAreThoseOfAnIdealLens) {
+  const std::string handheld = "--set motion.handheld.frequency_hz=3 ";
+  ASSERT_EQ(Run(Small("handheld_boxes", "a") + "--duration 0.12 --set output.flow=true -q " + handheld), 0) << err;
+  const SimulatedRun run = RunOf("handheld_boxes", "motion.handheld.frequency_hz=3");
+  const Camera ideal(Rectified(run.camera.calibration()));
+  const hdf5::File truth(folder / "a" / "handheld_boxes_gt.hdf5");
+  std::vector<double> depth(90 * 120);
+  std::vector<double> flow(2 * 90 * 120);
+  truth.Open("davis/left/depth_image_rect").Read(1, 1, depth.data());
+  truth.Open("davis/left/flow_dist").Read(1, 1, flow.data());
+  const SE3 T_world_now = run.motion(50'000'000);
+  const SE3 T_next_now = run.motion(100'000'000).Inverse() * T_world_now;
+  double longest = 0.0;
+  for (int i = 0; i < 90 * 120; i += 37) {
+    const Eigen::Vector2d pixel(i % 120, i / 120);
+    const Eigen::Vector2d ray((pixel.x() - 60.0) / 90.0, (pixel.y() - 45.0) / 90.0);
+    const Hit hit = CastRay(run.scene, ray, 50'000'000, T_world_now);
+    if (hit.margin < 1e-4) continue;
+    const Eigen::Vector2d moved = ideal.Project(T_next_now * (hit.depth * ray.homogeneous())) - pixel;
+    const auto place = static_cast<std::size_t>(i);
+    EXPECT_NEAR(depth[place], hit.depth, 1e-4 * hit.depth) << pixel.transpose();
+    EXPECT_NEAR(flow[place], moved.x(), 1e-3) << pixel.transpose();
+    EXPECT_NEAR(flow[90 * 120 + place], moved.y(), 1e-3) << pixel.transpose();
+    longest = std::max(longest, moved.norm());
+  }
+  EXPECT_GT(longest, 1.0);
 }
 
 TEST_F(SimulateCommandTest, UzhSequencesHoldWhatThePublishedOnesDo) {
@@ -149,12 +189,7 @@ Tracks FollowPoints(const SimulatedRun& run, int count, TimeNs end) {
 TEST_F(SimulateCommandTest, PointsOfTheSceneAreTracksWithoutError) {
   ASSERT_EQ(Run(Small("handheld_boxes", "room") + "--duration 1 --set output.start_s=0 --set simulation.samples=1"), 0)
       << err;
-  SceneOptions options;
-  Parameters parameters;
-  Register(parameters, options);
-  parameters.LoadFile(SceneFile("handheld_boxes.yaml"));
-  options.calibration = Path("camera.yaml");
-  WriteTracks(folder / "tracks.txt", FollowPoints(MakeRun(options), 100, FromSeconds(0.99)));
+  WriteTracks(folder / "tracks.txt", FollowPoints(RunOf("handheld_boxes"), 100, FromSeconds(0.99)));
   ASSERT_EQ(Run("evaluate --no-plots --tracks " + Quote(folder / "tracks.txt") + " --ground-truth " +
                 Quote(folder / "room" / "handheld_boxes_gt.hdf5") + " --calibration " + Quote(folder / "camera.yaml") +
                 " --out " + Quote(folder / "quality")),
