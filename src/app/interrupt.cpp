@@ -15,15 +15,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Removes what PendingPath and the plots call NAME.partPID.
-void RemoveUnfinished(const fs::path& folder) {
+constexpr int kMostRounds = 100;
+
+/// Removes what PendingPath, StagedFolder and the plots call NAME.partPID. Returns whether there was anything.
+bool RemoveUnfinished(const fs::path& folder) {
   const std::string ending = ".part" + std::to_string(::getpid());
   std::error_code ignored;
   std::vector<fs::path> unfinished;
   for (fs::recursive_directory_iterator entry(folder, ignored), end; entry != end; entry.increment(ignored)) {
-    if (entry->path().filename().string().ends_with(ending)) unfinished.push_back(entry->path());
+    if (!entry->path().filename().string().ends_with(ending)) continue;
+    unfinished.push_back(entry->path());
+    entry.disable_recursion_pending();
   }
   for (const auto& path : unfinished) fs::remove_all(path, ignored);
+  return !unfinished.empty();
 }
 
 }  // namespace
@@ -48,7 +53,8 @@ void InterruptGuard::Wait() {
   ::sigwait(&signals_, &signal);
   if (done_) return;
   std::fputs("evo-run: error: interrupted; results written so far are whole\n", stderr);
-  RemoveUnfinished(folder_);  // last, since the other threads still run
+  // Last, since the other threads still run, and again as long as they have made something anew meanwhile.
+  for (int i = 0; i < kMostRounds && RemoveUnfinished(folder_); ++i) continue;
   ::signal(signal, SIG_DFL);
   ::pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);
   ::raise(signal);

@@ -1,5 +1,6 @@
 #include "app/options.hpp"
 
+#include "evo/core/format.hpp"
 #include "evo/core/logging.hpp"
 
 namespace evo::app {
@@ -12,6 +13,15 @@ void CommonOptions::Apply(Parameters* parameters) const {
 
 GroundTruthSource CommonOptions::Source() const {
   return ground_truth_source == "loam" ? GroundTruthSource::kLoam : GroundTruthSource::kCartographer;
+}
+
+CLI::Validator NumberBetween(double lowest, double highest) {
+  const auto check = [=](const std::string& text) -> std::string {
+    double number = 0.0;
+    if (CLI::detail::lexical_cast(text, number) && number >= lowest && number <= highest) return "";
+    return "'" + text + Format("' is not a number from %g to %g", lowest, highest);
+  };
+  return {check, ""};
 }
 
 void AddConfigurationOptions(CLI::App& command, CommonOptions& options) {

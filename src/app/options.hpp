@@ -25,6 +25,9 @@ struct CommonOptions {
   GroundTruthSource Source() const;
 };
 
+/// A number in [lowest, highest]; NaN never is.
+CLI::Validator NumberBetween(double lowest, double highest);
+
 /// --config, --set, -v and -q.
 void AddConfigurationOptions(CLI::App& command, CommonOptions& options);
 /// All of them but --config.

@@ -39,21 +39,24 @@ void CheckOutputFolder(const fs::path& folder, const std::vector<std::string>& r
   }
 }
 
+void RemoveResult(const fs::path& path) {
+  std::error_code failure;
+  fs::remove(path, failure);
+  if (failure) {
+    throw Error(ErrorKind::kOutput, path.string() + ": cannot remove this earlier result: " + failure.message());
+  }
+}
+
 void RemoveResults(const fs::path& folder, const std::string& pattern) {
   const std::regex names(pattern);
   std::vector<fs::path> found;
-  std::error_code failure;
-  for (const auto& entry : fs::directory_iterator(folder, failure)) {
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder, none)) {
     if (entry.is_regular_file() && std::regex_match(entry.path().filename().string(), names)) {
       found.push_back(entry.path());
     }
   }
-  for (const auto& path : found) {
-    fs::remove(path, failure);
-    if (failure) {
-      throw Error(ErrorKind::kOutput, path.string() + ": cannot remove this earlier result: " + failure.message());
-    }
-  }
+  for (const auto& path : found) RemoveResult(path);
 }
 
 void RemovePlots(const fs::path& folder, const std::string& pattern) {

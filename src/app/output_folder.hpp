@@ -11,6 +11,8 @@ namespace evo::app {
 /// or deleted yet.
 void CheckOutputFolder(const std::filesystem::path& folder, const std::vector<std::string>& results, bool force);
 
+/// Removes a file, which need not exist. Throws Error (kOutput).
+void RemoveResult(const std::filesystem::path& path);
 /// Removes the files of `folder`, which need not exist, whose whole name fits `pattern` (a regular expression), and
 /// nothing else. Throws Error (kOutput).
 void RemoveResults(const std::filesystem::path& folder, const std::string& pattern);

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "app/commands.hpp"
+#include "app/interrupt.hpp"
 #include "app/output_folder.hpp"
 #include "evo/core/logging.hpp"
 #include "evo/core/output_file.hpp"
@@ -28,6 +29,7 @@ void RunReport(const ReportArguments& arguments) {
   const std::string alignment = ChooseAlignment(runs, arguments.alignment);
   const CsvTable table = MergeRuns(runs);
   const std::string page = RunsPage(arguments.title, runs, table);
+  const InterruptGuard guard(arguments.out);
   WriteCsv(arguments.out / "runs.csv", table);
   WriteText(arguments.out / "runs.tex", RunsLatex(table, alignment));
   WriteText(arguments.out / "index.html", page);

@@ -121,7 +121,7 @@ Command AddRunCommand(CLI::App& app) {
   AddAlignmentOption(*parser, arguments->align);
   parser->get_option("--align")->default_str(kUsualAlignments);  // as far as the motion determines them
   AddStageOptions(*parser, arguments->stage);
-  AddDrawingOption(*parser, arguments->stage);
+  AddDrawingOptions(*parser, arguments->stage);
   AddConfigurationOptions(*parser, arguments->common);
   AddComputeOptions(*parser, arguments->common);
   AddGroundTruthSourceOption(*parser, arguments->common);

@@ -9,6 +9,7 @@
 #include "evo/io/trajectory_io.hpp"
 #include "evo/io/uzh_writer.hpp"
 #include "evo/report/png.hpp"
+#include "evo/simulation/true_maps.hpp"
 
 namespace evo::app {
 
@@ -21,12 +22,55 @@ Trajectory Shifted(Trajectory poses, TimeNs offset) {
   return poses;
 }
 
+/// A _gt.hdf5: poses, true depth and, where asked for, flow.
+class GroundTruthOutput {
+ public:
+  GroundTruthOutput(const fs::path& path, const SimulatedRun& run, const Trajectory& poses, bool with_flow,
+                    TimeNs start, ThreadPool* pool)
+      : motion_(run.motion),
+        rectified_(Rectified(run.camera.calibration())),
+        rectified_depth_(run.scene, rectified_, pool),
+        with_flow_(with_flow),
+        start_(start),
+        file_(path, poses, poses) {}
+
+  void OnDepth(TimeNs t, const DepthMap& depth) {
+    const SE3 T_world_cam = motion_(t);
+    file_.AppendDepth(start_ + t, depth);
+    DepthMap rectified = rectified_depth_.At(t, T_world_cam);
+    file_.AppendRectifiedDepth(start_ + t, rectified);
+    if (with_flow_ && last_) {
+      file_.AppendFlow(start_ + last_->t,
+                       StaticFlow(rectified_, last_->depth, T_world_cam.Inverse() * last_->T_world_cam));
+    }
+    if (with_flow_) last_ = {t, T_world_cam, std::move(rectified)};
+  }
+  void Commit() { file_.Commit(); }
+
+ private:
+  struct Last {
+    TimeNs t;
+    SE3 T_world_cam;
+    DepthMap depth;  ///< rectified
+  };
+
+  const CameraMotion& motion_;
+  Camera rectified_;
+  DepthCamera rectified_depth_;
+  bool with_flow_;
+  TimeNs start_;
+  MvsecGroundTruthWriter file_;
+  std::optional<Last> last_;
+};
+
 class MvsecOutput : public SequenceOutput {
  public:
-  MvsecOutput(const fs::path& folder, const std::string& name, const Camera& camera, const Trajectory& poses,
-              TimeNs start)
-      : start_(start), data_(folder / (name + "_data.hdf5")), truth_(folder / (name + "_gt.hdf5"), poses, poses) {
-    WriteCamchain(folder / ("camchain-imucam-" + name + ".yaml"), camera.calibration());
+  MvsecOutput(const fs::path& folder, const std::string& name, const SimulatedRun& run, const Trajectory& poses,
+              const OutputOptions& options, ThreadPool* pool)
+      : start_(FromSeconds(options.start_s)),
+        data_(folder / (name + "_data.hdf5")),
+        truth_(folder / (name + "_gt.hdf5"), run, Shifted(poses, start_), options.flow, start_, pool) {
+    WriteCamchain(folder / ("camchain-imucam-" + name + ".yaml"), run.camera.calibration());
   }
 
   void OnEvents(const EventColumns& events) override {
@@ -37,7 +81,7 @@ class MvsecOutput : public SequenceOutput {
   void OnImage(TimeNs t, const GreyImage& image, std::size_t events_before) override {
     data_.AppendImage(start_ + t, image, events_before);
   }
-  void OnDepth(TimeNs t, const DepthMap& depth) override { truth_.AppendDepth(start_ + t, depth); }
+  void OnDepth(TimeNs t, const DepthMap& depth) override { truth_.OnDepth(t, depth); }
   void Commit() override {
     data_.Commit();
     truth_.Commit();
@@ -46,16 +90,18 @@ class MvsecOutput : public SequenceOutput {
  private:
   TimeNs start_;
   MvsecDataWriter data_;
-  MvsecGroundTruthWriter truth_;
+  GroundTruthOutput truth_;
   EventColumns shifted_;
 };
 
 class UzhOutput : public SequenceOutput {
  public:
-  UzhOutput(const fs::path& folder, const Camera& camera, const Trajectory& poses)
-      : folder_(folder), poses_(poses), events_(folder / "events.txt"), images_(folder / "images.txt") {
-    WriteUzhCalibration(folder / "calib.txt", camera.calibration());
+  UzhOutput(const fs::path& folder, const SimulatedRun& run, const Trajectory& poses, const OutputOptions& options,
+            bool with_depth, ThreadPool* pool)
+      : folder_(folder), events_(folder / "events.txt"), images_(folder / "images.txt") {
+    WriteUzhCalibration(folder / "calib.txt", run.camera.calibration());
     WriteTum(folder / "groundtruth.txt", poses);
+    if (with_depth) depth_.emplace(folder / "depth_gt.hdf5", run, poses, options.flow, 0, pool);
   }
 
   void OnEvents(const EventColumns& events) override { events_.Append(events); }
@@ -64,10 +110,7 @@ class UzhOutput : public SequenceOutput {
     WritePng(folder_ / name, image);
     images_.stream() << FormatTime(t) << ' ' << name << '\n';
   }
-  void OnDepth(TimeNs t, const DepthMap& depth) override {
-    if (!depth_) depth_.emplace(folder_ / "depth_gt.hdf5", poses_, poses_);
-    depth_->AppendDepth(t, depth);
-  }
+  void OnDepth(TimeNs t, const DepthMap& depth) override { depth_->OnDepth(t, depth); }
   void Commit() override {
     events_.Commit();
     images_.Commit();
@@ -76,11 +119,10 @@ class UzhOutput : public SequenceOutput {
 
  private:
   fs::path folder_;
-  Trajectory poses_;
   UzhEventWriter events_;
   OutputFile images_;
   std::size_t image_count_ = 0;
-  std::optional<MvsecGroundTruthWriter> depth_;
+  std::optional<GroundTruthOutput> depth_;
 };
 
 constexpr int kZoom = 2;
@@ -112,6 +154,7 @@ EventColumns Cut(const EventColumns& events, TimeNs from, TimeNs to) {
 void Register(Parameters& p, OutputOptions& o) {
   p.Add("output.start_s", &o.start_s, 0.0, 4e9, "stamp of the start in an MVSEC file (s); UZH starts at 0");
   p.Add("output.pose_hz", &o.pose_hz, 1.0, 1000.0, "true poses a second");
+  p.Add("output.flow", &o.flow, "true flow in the rectified image from each depth map to the next, 0.7 MB each");
 }
 
 std::vector<std::string> SequenceResultNames(SequenceFormat format, const std::string& name) {
@@ -122,14 +165,19 @@ std::vector<std::string> SequenceResultNames(SequenceFormat format, const std::s
 }
 
 std::unique_ptr<SequenceOutput> MakeSequenceOutput(SequenceFormat format, const fs::path& folder,
-                                                   const std::string& name, const Camera& camera,
-                                                   const Trajectory& poses, const OutputOptions& options) {
-  if (format == SequenceFormat::kUzh) return std::make_unique<UzhOutput>(folder, camera, poses);
-  const TimeNs start = FromSeconds(options.start_s);
-  return std::make_unique<MvsecOutput>(folder, name, camera, Shifted(poses, start), start);
+                                                   const std::string& name, const SimulatedRun& run,
+                                                   const Trajectory& poses, const OutputOptions& options,
+                                                   bool with_depth, ThreadPool* pool) {
+  if (format == SequenceFormat::kUzh) {
+    return std::make_unique<UzhOutput>(folder, run, poses, options, with_depth, pool);
+  }
+  return std::make_unique<MvsecOutput>(folder, name, run, poses, options, pool);
 }
 
-void RemoveSequenceImages(const fs::path& folder) {
+void RemoveSequence(const fs::path& folder, SequenceFormat format, const std::string& name) {
+  for (const auto& result : SequenceResultNames(format, name)) {
+    if (!fs::is_directory(folder / result)) RemoveResult(folder / result);
+  }
   for (const char* const subfolder : {"images", "preview"}) {
     RemoveResults(folder / subfolder, R"(frame_(\d{8}|\d{4,}\.\d{3}s)\.png)");
   }

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "evo/core/parallel.hpp"
 #include "evo/core/parameters.hpp"
-#include "evo/geometry/camera.hpp"
 #include "evo/geometry/trajectory.hpp"
-#include "evo/simulation/simulate.hpp"
+#include "evo/simulation/scene_options.hpp"
 
 namespace evo::app {
 
@@ -16,6 +16,7 @@ namespace evo::app {
 struct OutputOptions {
   double start_s = 1506117900.0;  ///< stamp of the first instant in an MVSEC file; UZH starts at 0
   double pose_hz = 200.0;         ///< true poses a second
+  bool flow = false;              ///< true flow beside the depth maps
 };
 void Register(Parameters& parameters, OutputOptions& options);
 
@@ -24,22 +25,26 @@ enum class SequenceFormat { kMvsec, kUzh };
 /// What of a sequence and its preview lies in its folder, for CheckOutputFolder. `name` is that of the sequence.
 std::vector<std::string> SequenceResultNames(SequenceFormat format, const std::string& name);
 
-/// A sequence being written in a stream. All files but single images appear on Commit(). Throws Error (kOutput).
+/// A sequence being written in a stream.
 class SequenceOutput : public SimulationSink {
  public:
   virtual void Commit() = 0;
 };
 
-/// MVSEC: NAME_data.hdf5 (events, image_raw), NAME_gt.hdf5 (odometry and pose, the same; depth_image_raw) and
-/// camchain-imucam-NAME.yaml. UZH: events.txt, groundtruth.txt, calib.txt, images.txt with images/frame_*.png, and, if
-/// there are depth maps, depth_gt.hdf5 in MVSEC's layout, since UZH has no place for them. Throws Error
-/// (kConfiguration) for a camera that the format's calibration cannot describe. `poses` since the start of the run.
+/// MVSEC: NAME_data.hdf5 (events, image_raw), NAME_gt.hdf5 (odometry and pose, the same; depth_image_raw,
+/// depth_image_rect and, with `flow`, flow_dist) and camchain-imucam-NAME.yaml. UZH: events.txt, groundtruth.txt,
+/// calib.txt, images.txt with images/frame_*.png, and, `with_depth`, depth_gt.hdf5 in MVSEC's layout, since UZH has no
+/// place for it. The rectified image is the raw one without distortion, with the same intrinsics: depth and flow there
+/// are computed for its own pixel centres, not looked up in the raw image. Throws Error: kConfiguration for a camera
+/// that the format's calibration cannot describe, kOutput. `poses` since the start of the run, which must outlive the
+/// output, as must `pool`.
 std::unique_ptr<SequenceOutput> MakeSequenceOutput(SequenceFormat format, const std::filesystem::path& folder,
-                                                   const std::string& name, const Camera& camera,
-                                                   const Trajectory& poses, const OutputOptions& options);
+                                                   const std::string& name, const SimulatedRun& run,
+                                                   const Trajectory& poses, const OutputOptions& options,
+                                                   bool with_depth, ThreadPool* pool);
 
-/// Removes what earlier sequences have left in images/ and preview/ below `folder`, and nothing else there.
-void RemoveSequenceImages(const std::filesystem::path& folder);
+/// Removes what an earlier sequence of that format and name has left in `folder`, and nothing else there.
+void RemoveSequence(const std::filesystem::path& folder, SequenceFormat format, const std::string& name);
 
 /// Hands everything on to `output` and draws, every `every` from the first image on, the image and the events of the
 /// 20 ms before it side by side: preview/NAME_SECONDSs.png.

@@ -10,6 +10,7 @@
 #include "app/output_folder.hpp"
 #include "app/run_record.hpp"
 #include "app/sequence_output.hpp"
+#include "app/staged_folder.hpp"
 #include "evo/core/error.hpp"
 #include "evo/core/format.hpp"
 #include "evo/simulation/scene_options.hpp"
@@ -46,9 +47,14 @@ struct SimulateConfig {
 };
 
 /// The part of the scene that --from and --duration name.
-SimulatedRun ChosenPart(const SimulateArguments& arguments, const SimulatedRun& run) {
+SimulatedRun ChosenPart(const SimulateArguments& arguments, const SceneOptions& scene, const SimulatedRun& run) {
   const TimeNs from = FromSeconds(arguments.from_s);
-  return PartOf(run, from, arguments.duration_s ? FromSeconds(*arguments.duration_s) : run.duration - from);
+  const TimeNs duration = arguments.duration_s ? FromSeconds(*arguments.duration_s) : run.duration - from;
+  if (duration > 0 && from + duration <= run.duration) return PartOf(run, from, duration);
+  const std::string longer =
+      scene.motion == "file" ? "give a longer trajectory" : "raise motion." + scene.motion + ".duration_s";
+  throw Error(ErrorKind::kUsage, "--from, --duration: the motion ends after " + FormatTime(run.duration) +
+                                     " s; ask for less, or " + longer);
 }
 
 void PrintSummary(const std::string& name, const Camera& camera, const Trajectory& poses,
@@ -71,15 +77,53 @@ void PrintFiles(const fs::path& out, const std::vector<std::string>& names) {
   for (const auto& name : names) {
     const fs::path path = out / name;
     if (!fs::is_regular_file(path)) continue;
+    const auto bytes = static_cast<double>(fs::file_size(path));
     std::cout << "file       " << path.string()
-              << Format(", %.1f MB\n", 1e-6 * static_cast<double>(fs::file_size(path)));
+              << Format(bytes < 1e6 ? ", %.1f kB\n" : ", %.1f MB\n", bytes < 1e6 ? 1e-3 * bytes : 1e-6 * bytes);
   }
+  std::cout << "results    " << out.string() << '\n';
 }
+
+/// What is to be made, checked.
+struct Order {
+  Order(const SimulateArguments& arguments, const SimulateConfig& config)
+      : format(arguments.format == "uzh" ? SequenceFormat::kUzh : SequenceFormat::kMvsec) {
+    const SimulationOptions& simulation = config.scene.simulation;
+    if (arguments.out.empty()) {
+      throw Error(ErrorKind::kUsage, "simulate: --out is required; see evo-run simulate --help");
+    }
+    if (arguments.preview_every_s > 0.0 && simulation.image_hz == 0.0) {
+      throw Error(ErrorKind::kUsage, "--preview-every shows images, but simulation.image_hz is 0; raise it");
+    }
+    if (config.output.flow && simulation.depth_hz == 0.0) {
+      throw Error(ErrorKind::kConfiguration,
+                  "output.flow comes with the depth maps, but simulation.depth_hz is 0; raise it");
+    }
+    const std::string scene_file = arguments.common.config_file;
+    place = scene_file.empty() ? "simulate" : scene_file;
+    name = scene_file.empty() ? config.scene.kind : fs::path(scene_file).stem().string();
+    auto results = SequenceResultNames(format, name);
+    results.emplace_back("manifest.json");
+    CheckOutputFolder(arguments.out, results, arguments.common.force);
+  }
+
+  SequenceFormat format;
+  std::string place;  ///< that errors name
+  std::string name;   ///< of the sequence
+};
 
 void AddInputs(const SimulateArguments& arguments, const SceneOptions& scene, RunRecord* record) {
   if (!arguments.common.config_file.empty()) record->AddInput("scene", arguments.common.config_file);
   if (scene.motion == "file") record->AddInput("motion", scene.motion_file);
   if (fs::is_regular_file(scene.calibration)) record->AddInput("calibration", scene.calibration);
+}
+
+void AddCounts(const SimulationCounts& counts, RunRecord* record) {
+  record->AddCount("events", counts.events);
+  record->AddCount("positive_events", counts.positive);
+  record->AddCount("images", counts.images);
+  record->AddCount("depth_maps", counts.depth_maps);
+  record->AddCount("pixel_renders", counts.pixel_renders);
 }
 
 void RunSimulate(const SimulateArguments& arguments, const std::vector<std::string>& command_line) {
@@ -90,28 +134,19 @@ void RunSimulate(const SimulateArguments& arguments, const std::vector<std::stri
     std::cout << config.parameters.ToYaml();
     return;
   }
-  if (arguments.out.empty()) throw Error(ErrorKind::kUsage, "simulate: --out is required; see evo-run simulate --help");
-  if (arguments.preview_every_s > 0.0 && config.scene.simulation.image_hz == 0.0) {
-    throw Error(ErrorKind::kUsage, "--preview-every shows images, but simulation.image_hz is 0; raise it");
-  }
-  const std::string scene_file = arguments.common.config_file;
-  const std::string name = scene_file.empty() ? config.scene.kind : fs::path(scene_file).stem().string();
-  const auto format = arguments.format == "uzh" ? SequenceFormat::kUzh : SequenceFormat::kMvsec;
-  const auto results = SequenceResultNames(format, name);
-  auto checked = results;
-  checked.emplace_back("manifest.json");
-  CheckOutputFolder(arguments.out, checked, arguments.common.force);
-
-  const SimulatedRun run = NamingPlace(scene_file.empty() ? "simulate" : scene_file,
-                                       [&] { return ChosenPart(arguments, MakeRun(config.scene)); });
+  const Order order(arguments, config);
+  const SimulatedRun run =
+      NamingPlace(order.place, [&] { return ChosenPart(arguments, config.scene, MakeRun(config.scene)); });
   const Trajectory poses = Sample(run.motion, run.duration, config.output.pose_hz);
   RunRecord record(command_line, config.parameters);
   AddInputs(arguments, config.scene, &record);
-  if (arguments.common.force) RemoveSequenceImages(arguments.out);
+
   const InterruptGuard guard(arguments.out);
   ThreadPool pool(arguments.common.threads);
-  const auto output = MakeSequenceOutput(format, arguments.out, name, run.camera, poses, config.output);
-  PreviewOutput preview(output.get(), arguments.out / "preview", FromSeconds(arguments.preview_every_s));
+  StagedFolder staged(arguments.out);
+  const auto output = MakeSequenceOutput(order.format, staged.path(), order.name, run, poses, config.output,
+                                         config.scene.simulation.depth_hz > 0.0, &pool);
+  PreviewOutput preview(output.get(), staged.path() / "preview", FromSeconds(arguments.preview_every_s));
   SimulationSink* const sink = arguments.preview_every_s > 0.0 ? static_cast<SimulationSink*>(&preview) : output.get();
   const SimulationCounts counts = record.Time("simulate", [&] {
     Progress progress("simulate", !arguments.common.quiet);
@@ -119,14 +154,12 @@ void RunSimulate(const SimulateArguments& arguments, const std::vector<std::stri
                     static_cast<std::uint64_t>(config.scene.seed), &pool, &progress, sink);
   });
   output->Commit();
-  record.AddCount("events", counts.events);
-  record.AddCount("positive_events", counts.positive);
-  record.AddCount("images", counts.images);
-  record.AddCount("depth_maps", counts.depth_maps);
-  record.AddCount("pixel_renders", counts.pixel_renders);
-  WriteManifest(arguments.out / "manifest.json", record.manifest);
-  PrintSummary(name, run.camera, poses, counts, record.manifest.stages.back().seconds, pool.size());
-  PrintFiles(arguments.out, results);
+  AddCounts(counts, &record);
+  WriteManifest(staged.path() / "manifest.json", record.manifest);
+  if (arguments.common.force) RemoveSequence(arguments.out, order.format, order.name);
+  staged.Commit();
+  PrintSummary(order.name, run.camera, poses, counts, record.manifest.stages.back().seconds, pool.size());
+  PrintFiles(arguments.out, SequenceResultNames(order.format, order.name));
 }
 
 }  // namespace
@@ -145,13 +178,13 @@ Command AddSimulateCommand(CLI::App& app) {
       ->check(CLI::Range(0, std::numeric_limits<int>::max()).description(""))
       ->type_name("N");
   parser->add_option("--from", arguments->from_s, "begin this many seconds into the scene")
-      ->check(CLI::Range(0.0, 1e6).description(""))
+      ->check(NumberBetween(0.0, 1e6))
       ->type_name("S");
   parser->add_option("--duration", arguments->duration_s, "length; default: up to the scene's end")
-      ->check(CLI::Range(0.001, 1e6).description(""))
+      ->check(NumberBetween(0.001, 1e6))
       ->type_name("S");
   parser->add_option("--preview-every", arguments->preview_every_s, "draw image and events every S seconds")
-      ->check(CLI::Range(0.001, 1e6).description(""))
+      ->check(NumberBetween(0.001, 1e6))
       ->type_name("S");
   parser->add_flag("--print", arguments->print, "print every parameter of the scene and its meaning as YAML instead");
   AddSettingOptions(*parser, arguments->common);

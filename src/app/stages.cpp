@@ -75,15 +75,15 @@ void StageContext::Finish() const { WriteManifest(options.out / "manifest.json",
 
 void AddStageOptions(CLI::App& command, StageOptions& options) {
   command.add_option("--out", options.out, "folder for the results")->required()->type_name("DIR");
-  command.add_flag("--no-plots", options.no_plots, "write tables only");
 }
 
-void AddDrawingOption(CLI::App& command, StageOptions& options) {
+void AddDrawingOptions(CLI::App& command, StageOptions& options) {
+  command.add_flag("--no-plots", options.no_plots, "write tables only");
   command
       .add_option("--draw-every", options.draw_every_s,
                   "draw four event frames with their tracks into images/ every so many seconds; default: once, in the "
                   "middle")
-      ->check(CLI::Validator(CLI::PositiveNumber).description(""))
+      ->check(NumberBetween(1e-3, 1e6))
       ->type_name("S");
 }
 

@@ -23,10 +23,10 @@ struct StageOptions {
   double draw_every_s = 0.0;  ///< 0: event frames are drawn once, in the middle, unless no_plots
 };
 
-/// --out and --no-plots.
+/// --out.
 void AddStageOptions(CLI::App& command, StageOptions& options);
-/// --draw-every, for commands that see the events.
-void AddDrawingOption(CLI::App& command, StageOptions& options);
+/// --no-plots and --draw-every, for commands that see the events.
+void AddDrawingOptions(CLI::App& command, StageOptions& options);
 
 /// What all stages of one command share.
 struct StageContext {

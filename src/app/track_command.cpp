@@ -30,7 +30,7 @@ Command AddTrackCommand(CLI::App& app) {
   auto* const parser = app.add_subcommand("track", "Track features in the events: tracks.txt and lifetime.csv");
   AddRecordingOptions(*parser, arguments->recording);
   AddStageOptions(*parser, arguments->stage);
-  AddDrawingOption(*parser, arguments->stage);
+  AddDrawingOptions(*parser, arguments->stage);
   AddConfigurationOptions(*parser, arguments->common);
   AddComputeOptions(*parser, arguments->common);
   parser->footer(

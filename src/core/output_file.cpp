@@ -43,13 +43,17 @@ OutputFile::OutputFile(std::filesystem::path path) : pending_(std::move(path)) {
   }
 }
 
-void OutputFile::Commit() {
-  errno = 0;
-  stream_.close();
+void OutputFile::Check() const {
   if (!stream_) {
     throw Error(ErrorKind::kOutput, pending_.path().string() + ": writing failed: " +
                                         std::strerror(errno ? errno : EIO) + "; is the disk full?");
   }
+}
+
+void OutputFile::Commit() {
+  errno = 0;
+  stream_.close();
+  Check();
   pending_.Commit();
 }
 

@@ -9,6 +9,7 @@
 #include <functional>
 #include <iterator>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "evo/core/error.hpp"
@@ -73,11 +74,12 @@ void Parameters::Add(std::string name, std::string* value, std::function<bool(co
 }
 
 void Parameters::LoadFile(const std::filesystem::path& path) {
+  if (std::filesystem::is_directory(path)) throw ConfigurationError(path.string(), "is a folder; give a YAML file");
   std::ifstream file(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (!file || std::filesystem::is_directory(path)) {
-    throw ConfigurationError(path.string(), "cannot read this configuration file; give a YAML file");
-  }
+  if (!file) throw ConfigurationError(path.string(), "cannot read this file; give a YAML file");
+  if (text.empty()) throw ConfigurationError(path.string(), "is an empty file; give a YAML file");
+  if (text.find('\0') != std::string::npos) throw ConfigurationError(path.string(), "is no text; give a YAML file");
   LoadText(text, path.string());
 }
 
@@ -90,12 +92,14 @@ void Parameters::LoadText(const std::string& yaml, const std::string& source) {
     throw ConfigurationError(place(failure.mark), "not valid YAML: " + failure.msg);
   }
   if (root.IsNull()) return;
+  std::set<std::string> seen;
   const std::function<void(const YAML::Node&, const std::string&)> visit = [&](const YAML::Node& node,
                                                                                const std::string& prefix) {
     if (!node.IsMap()) throw ConfigurationError(place(node.Mark()), "expected 'name: value' pairs");
     for (const auto& item : node) {
       const std::string name = prefix + item.first.Scalar();
       if (item.second.IsScalar()) {
+        if (!seen.insert(name).second) throw ConfigurationError(place(item.first.Mark()), "'" + name + "' comes twice");
         Assign(name, item.second.Scalar(), place(item.first.Mark()));
       } else if (item.second.IsMap()) {
         visit(item.second, name + ".");

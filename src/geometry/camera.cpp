@@ -74,6 +74,13 @@ std::optional<Vector2d> UndistortEquidistant(const std::array<double, 5>& k, con
 
 }  // namespace
 
+Calibration Rectified(const Calibration& calibration) {
+  Calibration ideal = calibration;
+  ideal.distortion = Distortion::kRadTan;  // without coefficients that is a pinhole; equidistant would not be
+  ideal.coefficients = {};
+  return ideal;
+}
+
 Vector2d Camera::Distort(const Vector2d& normalized) const {
   const auto& c = calibration_;
   Vector2d distorted;

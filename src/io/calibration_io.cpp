@@ -180,11 +180,15 @@ void WriteCamchain(const std::filesystem::path& path, const Calibration& c) {
     return text + "]\n";
   };
   const double intrinsics[] = {c.fx, c.fy, c.cx, c.cy};
+  const double projection_x[] = {c.fx, 0.0, c.cx, 0.0};
+  const double projection_y[] = {0.0, c.fy, c.cy, 0.0};
   OutputFile file(path);
   file.stream() << "cam0:\n  camera_model: pinhole\n  intrinsics: " << list(intrinsics, 4)
                 << "  distortion_model: " << (c.distortion == Distortion::kRadTan ? "radtan" : "equidistant")
                 << "\n  distortion_coeffs: " << list(c.coefficients.data(), 4) << "  resolution: [" << c.width << ", "
-                << c.height << "]\n";
+                << c.height << "]\n  rectification_matrix:\n  - [1, 0, 0]\n  - [0, 1, 0]\n  - [0, 0, 1]\n"
+                << "  projection_matrix:\n  - " << list(projection_x, 4) << "  - " << list(projection_y, 4)
+                << "  - [0, 0, 1, 0]\n";
   file.Commit();
 }
 

@@ -102,7 +102,7 @@ FileKind DetectKind(const std::filesystem::path& path) {
   text.resize(file.Read(0, text.size(), text.data()));
   if (text.empty()) return FileKind::kEmpty;
   if (text.starts_with(kPngSignature)) return FileKind::kPng;
-  hdf5::Silence();
+  hdf5::SetUp();
   if (H5Fis_hdf5(path.c_str()) > 0) return FileKind::kHdf5;
   if (IsBinary(text)) return FileKind::kBinary;
   return KindOfText(text);

@@ -1,6 +1,7 @@
 #include "io/hdf5.hpp"
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 
 #include "io/lzf_filter.hpp"
@@ -36,7 +37,11 @@ Handle& Handle::operator=(Handle&& other) noexcept {
 
 bool Handle::Close() { return id_ < 0 || close_(std::exchange(id_, -1)) >= 0; }
 
-void Silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+void SetUp() {
+  // All is closed by its Handle. HDF5 1.10 would crash at exit where a file could not be closed for a full disk.
+  H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 std::string LastFailure() {
   std::string reason;
@@ -45,11 +50,17 @@ std::string LastFailure() {
     return 0;
   };
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, innermost, &reason);
-  return reason.empty() ? "unknown HDF5 failure" : reason;
+  if (reason.empty()) return "unknown HDF5 failure";
+  // What the system said, without the pointers and the like around it.
+  constexpr std::string_view kSystem = "error message = '";
+  const auto found = reason.find(kSystem);
+  if (found == std::string::npos) return reason;
+  const auto begin = found + kSystem.size();
+  return reason.substr(begin, reason.find('\'', begin) - begin);
 }
 
 File::File(const std::filesystem::path& path) : path_(path.string()) {
-  Silence();
+  SetUp();
   RegisterLzf();
   id_ = Handle(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, kDefault), H5Fclose);
   if (!id_.valid()) {
@@ -138,7 +149,7 @@ double Dataset::ReadElement(hsize_t row, hsize_t column) const {
 }
 
 void Dataset::ReadBlock(const std::vector<hsize_t>& first, const std::vector<hsize_t>& count, double* values) const {
-  Silence();
+  SetUp();
   const Handle memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr), H5Sclose);
   const Handle space(H5Dget_space(id_.get()), H5Sclose);
   if (H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, first.data(), nullptr, count.data(), nullptr) < 0 ||

@@ -34,8 +34,8 @@ class Handle {
   herr_t (*close_)(hid_t) = nullptr;
 };
 
-/// Stops HDF5 from printing its error stack (on this thread).
-void Silence();
+/// To be called before anything else of HDF5: it prints no error stack (on this thread) and does nothing at exit.
+void SetUp();
 
 /// Why the last call failed, in HDF5's words.
 std::string LastFailure();

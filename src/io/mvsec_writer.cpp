@@ -26,7 +26,7 @@ double NearestSeconds(TimeNs t) {
 class Hdf5Output {
  public:
   explicit Hdf5Output(const std::filesystem::path& path) : pending_(path) {
-    hdf5::Silence();
+    hdf5::SetUp();
     file_ = Checked(H5Fcreate(pending_.temporary().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
     with_groups_ = hdf5::Handle(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
     H5Pset_create_intermediate_group(with_groups_.get(), 1);
@@ -81,8 +81,8 @@ class Hdf5Output {
 
   void Check(bool good) const {
     if (good) return;
-    throw Error(ErrorKind::kOutput, pending_.path().string() + ": writing failed: " + hdf5::LastFailure() +
-                                        "; is the folder writable and the disk not full?");
+    throw Error(ErrorKind::kOutput,
+                pending_.path().string() + ": writing failed: " + hdf5::LastFailure() + "; is the disk full?");
   }
 
  private:
@@ -119,15 +119,23 @@ class ImageStack {
 
   bool empty() const { return stamps_.empty(); }
 
+  /// An image of so many numbers along each axis.
   template <typename Value>
-  void Append(Hdf5Output* output, TimeNs t, int width, int height, const std::vector<Value>& values) {
-    const std::vector<hsize_t> image{static_cast<hsize_t>(height), static_cast<hsize_t>(width)};
-    if (empty()) dataset_ = output->CreateDataset(name_, {0, image[0], image[1]}, {1, image[0], image[1]}, type_);
+  void Append(Hdf5Output* output, TimeNs t, const std::vector<int>& axes, const std::vector<Value>& values) {
+    const std::vector<hsize_t> image(axes.begin(), axes.end());
+    if (empty()) {
+      std::vector<hsize_t> none{0}, one{1};
+      none.insert(none.end(), image.begin(), image.end());
+      one.insert(one.end(), image.begin(), image.end());
+      dataset_ = output->CreateDataset(name_, none, one, type_);
+    }
     output->Append(dataset_, stamps_.size(), image, values);
     stamps_.push_back(NearestSeconds(t));
   }
 
+  /// Nothing if there are no images.
   void Finish(Hdf5Output* output) {
+    if (empty()) return;
     output->Check(dataset_.Close());
     output->Write(name_ + "_ts", {stamps_.size()}, stamps_);
   }
@@ -177,7 +185,7 @@ void MvsecDataWriter::Append(const EventColumns& events) {
 }
 
 void MvsecDataWriter::AppendImage(TimeNs t, const GreyImage& image, std::size_t events_before) {
-  state_->images.Append(&state_->output, t, image.width, image.height, image.grey);
+  state_->images.Append(&state_->output, t, {image.height, image.width}, image.grey);
   state_->image_events.push_back(static_cast<std::int64_t>(events_before));
 }
 
@@ -201,7 +209,9 @@ struct MvsecGroundTruthWriter::State {
   explicit State(const std::filesystem::path& path) : output(path) {}
 
   Hdf5Output output;
-  ImageStack maps{"davis/left/depth_image_raw", H5T_NATIVE_FLOAT};
+  ImageStack depth{"davis/left/depth_image_raw", H5T_NATIVE_FLOAT};
+  ImageStack rectified_depth{"davis/left/depth_image_rect", H5T_NATIVE_FLOAT};
+  ImageStack flow{"davis/left/flow_dist", H5T_NATIVE_FLOAT};
 };
 
 MvsecGroundTruthWriter::MvsecGroundTruthWriter(const std::filesystem::path& path, const Trajectory& odometry,
@@ -214,11 +224,19 @@ MvsecGroundTruthWriter::MvsecGroundTruthWriter(const std::filesystem::path& path
 MvsecGroundTruthWriter::~MvsecGroundTruthWriter() = default;
 
 void MvsecGroundTruthWriter::AppendDepth(TimeNs t, const DepthMap& map) {
-  state_->maps.Append(&state_->output, t, map.width, map.height, map.depth);
+  state_->depth.Append(&state_->output, t, {map.height, map.width}, map.depth);
+}
+
+void MvsecGroundTruthWriter::AppendRectifiedDepth(TimeNs t, const DepthMap& map) {
+  state_->rectified_depth.Append(&state_->output, t, {map.height, map.width}, map.depth);
+}
+
+void MvsecGroundTruthWriter::AppendFlow(TimeNs t, const FlowMap& map) {
+  state_->flow.Append(&state_->output, t, {2, map.height, map.width}, map.flow);
 }
 
 void MvsecGroundTruthWriter::Commit() {
-  if (!state_->maps.empty()) state_->maps.Finish(&state_->output);
+  for (ImageStack* maps : {&state_->depth, &state_->rectified_depth, &state_->flow}) maps->Finish(&state_->output);
   state_->output.Commit();
 }
 

@@ -30,6 +30,7 @@ void UzhEventWriter::Append(const EventColumns& events) {
     text += events.polarity[i] > 0 ? " 1\n" : " 0\n";
   }
   file_.stream() << text;
+  file_.Check();
 }
 
 }  // namespace evo

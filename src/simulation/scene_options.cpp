@@ -15,10 +15,17 @@ namespace {
 
 constexpr double kViewAhead = 250.0;  // m of road beyond the end of the drive, so that the street is never seen to end
 
+constexpr double kMostPixels = 4e6;  // four times the largest event camera, at some 150 bytes each
+
 Calibration FindCalibration(const std::string& name) {
   if (name == "davis346") return MvsecDavis346();
   if (name == "davis240c") return UzhDavis240c();
-  return ReadCalibration(name);
+  const Calibration calibration = ReadCalibration(name);
+  const std::string size = std::to_string(calibration.width) + " x " + std::to_string(calibration.height) + " px";
+  if (static_cast<double>(calibration.width) * calibration.height > kMostPixels) {
+    throw Error(ErrorKind::kInput, name + ": a sensor of " + size + " is too large to be simulated; 4 million are not");
+  }
+  return calibration;
 }
 
 Error Misfit(const std::string& what) { return {ErrorKind::kConfiguration, what}; }
@@ -66,8 +73,10 @@ void Register(Parameters& p, SceneOptions& o) {
   p.Add("scene.seed", &o.seed, 0, std::numeric_limits<int>::max(), "of all that is left to chance");
   p.Add("scene.kind", &o.kind, {"street", "room", "slider"}, "the world");
   p.Add("motion.kind", &o.motion, {"vehicle", "handheld", "slider", "file"}, "of the camera");
-  p.Add("motion.file", &o.motion_file, any, "path", "trajectory for kind: file (TUM text)");
-  p.Add("scene.calibration", &o.calibration, any, "davis346, davis240c or the path of a calibration", "of the camera");
+  p.Add("motion.file", &o.motion_file, any, "path", "trajectory for kind: file (TUM text), gaps are bridged smoothly");
+  const auto named = [](const std::string& text) { return !text.empty(); };
+  p.Add("scene.calibration", &o.calibration, named, "davis346, davis240c or the path of a calibration",
+        "of the camera");
   p.Add("road.shape", &o.road_shape, {"straight", "curved", "turns"}, "turns: at right angles");
   p.Add("road.length_m", &o.road_length_m, 0.0, 1e5, "0: what the motion needs (m)");
   p.Add("road.slope", &o.road_slope, 0.0, 0.3, "steepest of the hills (rise over run)");
@@ -104,9 +113,8 @@ SimulatedRun MakeRun(const SceneOptions& options) {
 
 SimulatedRun PartOf(const SimulatedRun& run, TimeNs from, TimeNs duration) {
   if (from < 0 || duration <= 0 || from + duration > run.duration) {
-    throw Error(ErrorKind::kUsage, "the motion ends after " + FormatTime(run.duration) +
-                                       " s; give less for --from or --duration, or raise duration_s of "
-                                       "motion.vehicle, motion.handheld or motion.slider");
+    throw Error(ErrorKind::kUsage,
+                "the part lies outside of the motion, which ends after " + FormatTime(run.duration) + " s");
   }
   const auto later = [from]<class Motion>(const Motion& motion) -> Motion {
     return [motion, from](TimeNs t) { return motion(t + from); };

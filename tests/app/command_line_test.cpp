@@ -24,7 +24,7 @@ class CommandLineTest : public EvoRunTest {
 TEST_F(CommandLineTest, HelpShowsAnExampleOfEveryCommand) {
   EXPECT_EQ(Run("--help"), 0);
   const std::string overview = out;
-  for (const std::string command : {"run", "track", "odometry", "evaluate", "report", "info", "config"}) {
+  for (const std::string command : {"run", "track", "odometry", "evaluate", "report", "simulate", "info", "config"}) {
     EXPECT_NE(overview.find("\n  " + command + " "), std::string::npos) << overview;
     ASSERT_EQ(Run(command + " --help"), 0);
     EXPECT_NE(out.find("Example:\n  evo-run " + command), std::string::npos) << out;

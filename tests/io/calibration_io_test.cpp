@@ -113,5 +113,17 @@ TEST_F(CalibrationIoTest, RefusesOtherFiles) {
   ExpectMentions(Refusal([&] { ReadCalibration(folder / "none.txt"); }), {"none.txt", "no such file"});
 }
 
+/// As a lone camera is rectified: not turned, by its own intrinsics.
+TEST_F(CalibrationIoTest, ACamchainSaysHowToRectify) {
+  Calibration c{Distortion::kEquidistant, 30, 20, 11.5, 12.5, 14.0, 9.0, {0.1, 0.2, 0.3, 0.4, 0.0}};
+  WriteCamchain(folder / "camchain.yaml", c);
+  std::ifstream file(folder / "camchain.yaml");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_NE(text.find("  projection_matrix:\n  - [11.5, 0, 14, 0]\n  - [0, 12.5, 9, 0]\n  - [0, 0, 1, 0]\n"),
+            std::string::npos);
+  EXPECT_NE(text.find("  rectification_matrix:\n  - [1, 0, 0]\n  - [0, 1, 0]\n  - [0, 0, 1]\n"), std::string::npos);
+  EXPECT_EQ(ReadCalibration(folder / "camchain.yaml").coefficients, c.coefficients);
+}
+
 }  // namespace
 }  // namespace evo

@@ -36,6 +36,8 @@ class OutputFile {
   explicit OutputFile(std::filesystem::path path);
 
   std::ostream& stream() { return stream_; }
+  /// Throws if what was written so far did not fit: no need to go on then.
+  void Check() const;
   void Commit();
 
  private:

@@ -19,6 +19,9 @@ struct Calibration {
   std::array<double, 5> coefficients{};
 };
 
+/// The same camera with an ideal lens.
+Calibration Rectified(const Calibration& calibration);
+
 /// Pinhole camera with lens distortion: camera x right, y down, z forward.
 class Camera {
  public:

@@ -19,7 +19,9 @@ struct ImageSize {
 /// unsupported or impossible.
 Calibration ReadCalibration(const std::filesystem::path& path, std::optional<ImageSize> size = std::nullopt);
 
-/// Writes a camchain YAML with `cam0` alone, or a calib.txt, that ReadCalibration reads back exactly. Throws Error:
+/// Writes a camchain YAML with `cam0` alone, or a calib.txt, that ReadCalibration reads back exactly. A lone camera
+/// needs no turning to be rectified: the camchain's rectification is the identity, its projection the intrinsics, as in
+/// Rectified(). Throws Error:
 /// kConfiguration for what the format has no place for (a fifth coefficient in a camchain, equidistant distortion in a
 /// calib.txt), kOutput.
 void WriteCamchain(const std::filesystem::path& path, const Calibration& calibration);

@@ -20,6 +20,13 @@ struct DepthMap {
   }
 };
 
+/// For each pixel how far, in px, what it shows moves until a later time; NaN where that is not known.
+struct FlowMap {
+  int width = 0;             ///< px
+  int height = 0;            ///< px
+  std::vector<double> flow;  ///< 2 x height x width, row-major: to the right, then down
+};
+
 /// Whether an MVSEC _gt.hdf5 holds depth maps of the raw left image. False for a file of another kind.
 bool HasDepthMaps(const std::filesystem::path& path);
 

@@ -36,15 +36,19 @@ void WriteMvsecEvents(const std::filesystem::path& path, const EventColumns& eve
 
 /// Writes an MVSEC _gt.hdf5: `davis/left/odometry` (LOAM's place) and `davis/left/pose` (Cartographer's), N x 4 x 4
 /// row-major T_world_cam with their stamps in seconds, and, if there are any, depth maps of the raw image,
-/// `davis/left/depth_image_raw` (N x height x width float32, deflated) with `davis/left/depth_image_raw_ts`. The file
-/// appears whole on Commit() or not at all. Throws Error (kOutput).
+/// `davis/left/depth_image_raw`, and of the rectified one, `davis/left/depth_image_rect` (N x height x width), and the
+/// flow in the rectified image, which MVSEC calls `davis/left/flow_dist` (N x 2 x height x width): float32, deflated,
+/// each with its stamps in `..._ts`. The file appears whole on Commit() or not at all. Throws Error (kOutput).
 class MvsecGroundTruthWriter {
  public:
   MvsecGroundTruthWriter(const std::filesystem::path& path, const Trajectory& odometry, const Trajectory& pose);
   ~MvsecGroundTruthWriter();
 
-  /// All maps in order of time and of one size.
+  /// All maps of one kind in order of time and of one size.
   void AppendDepth(TimeNs t, const DepthMap& map);
+  void AppendRectifiedDepth(TimeNs t, const DepthMap& map);
+  /// Stamped with the time from which on things move so far.
+  void AppendFlow(TimeNs t, const FlowMap& map);
   void Commit();
 
  private:
