@@ -106,6 +106,15 @@ double PeakMemoryMb() {
   return static_cast<double>(usage.ru_maxrss) * 1024.0 * 1e-6;  // Linux counts in KiB
 }
 
+double CpuTimeS() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
 void WriteManifest(const std::filesystem::path& path, const Manifest& manifest) {
   Json json;
   json["tool"] = "evo-run";
@@ -123,6 +132,7 @@ void WriteManifest(const std::filesystem::path& path, const Manifest& manifest) 
   json["wall_time_s"] = Json::object();
   for (const auto& stage : manifest.stages) json["wall_time_s"][stage.stage] = stage.seconds;
   if (manifest.recorded_s) json["recorded_s"] = *manifest.recorded_s;
+  json["cpu_time_s"] = CpuTimeS();
   json["peak_memory_mb"] = PeakMemoryMb();
   json["parameters"] = ParameterTree(manifest.parameters);
   OutputFile file(path);

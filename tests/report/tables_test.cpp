@@ -182,6 +182,7 @@ TEST_F(TablesTest, ManifestHoldsWhatWasRun) {
   EXPECT_EQ(json["wall_time_s"]["evaluate"], 0.5);
   EXPECT_EQ(json["rebootstraps"][0], "1.500000000");
   EXPECT_GT(json["peak_memory_mb"].get<double>(), 1.0);
+  EXPECT_GT(json["cpu_time_s"].get<double>(), 0.0);
 }
 
 TEST_F(TablesTest, CannotWriteIsAnOutputError) {

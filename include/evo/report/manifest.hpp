@@ -35,7 +35,7 @@ struct Manifest {
   std::vector<TimeNs> rebootstraps;  ///< stamps of the frames at which the odometry started anew
 };
 
-/// manifest.json; the peak memory of this process so far is added. Throws Error (kOutput).
+/// manifest.json; processor time and peak memory of this process so far are added. Throws Error (kOutput).
 void WriteManifest(const std::filesystem::path& path, const Manifest& manifest);
 
 /// Reads one back. Values of parameters are text as WriteManifest was given it. Throws Error (kInput) with file and, if
@@ -47,5 +47,8 @@ std::optional<double> RealTimeFactor(const Manifest& manifest);
 
 /// Most memory that this process has held so far, MB (10^6 bytes).
 double PeakMemoryMb();
+
+/// Processor time that this process has used so far, all threads together, s.
+double CpuTimeS();
 
 }  // namespace evo
