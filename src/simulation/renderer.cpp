@@ -7,7 +7,6 @@
 #include <string>
 
 #include "evo/core/error.hpp"
-#include "evo/simulation/random.hpp"
 #include "simulation/lights.hpp"
 #include "simulation/ray_block.hpp"
 #include "simulation/surface_view.hpp"
@@ -19,6 +18,12 @@ using Eigen::Vector2d;
 namespace {
 
 constexpr int kMostSamples = 16;  // a pixel's rays must fit into one block
+
+// 1 / p and 1 / p^2 of the plastic number p: their multiples fill a square, and each row and column of pixels, evenly.
+constexpr double kPlastic = 0.7548776662466927;
+constexpr double kPlastic2 = 0.5698402909980532;
+
+double Fraction(double x) { return x - std::floor(x); }
 
 /// Cuts a tile into parts of which each fits into a block of rays.
 template <typename Use>
@@ -113,9 +118,8 @@ Renderer::Rays Renderer::CastRays(int samples) {
   Vector2d ray = Vector2d::Zero();  // where there is none the last one stands in
   for (int p = 0; p < camera_.width() * camera_.height(); ++p) {
     const Vector2d centre(p % camera_.width(), p / camera_.width());
-    Random random(0, static_cast<std::uint64_t>(p));
-    const double shift_x = samples == 1 ? 0.5 : random.Uniform();
-    const double shift_y = samples == 1 ? 0.5 : random.Uniform();
+    const double shift_x = samples == 1 ? 0.5 : Fraction(kPlastic2 * centre.x() + kPlastic * centre.y());
+    const double shift_y = samples == 1 ? 0.5 : Fraction(kPlastic * centre.x() + kPlastic2 * centre.y());
     for (int j = 0; j < samples; ++j) {
       for (int i = 0; i < samples; ++i) {
         const Vector2d place((i + (j + shift_x) / samples) / samples,
