@@ -1,0 +1,20 @@
+#include "evo/tracking/tracker.hpp"
+
+#include "evo/core/format.hpp"
+#include "evo/tracking/feature_tracker.hpp"
+#include "evo/tracking/klt_tracker.hpp"
+
+namespace evo {
+
+std::unique_ptr<Tracker> MakeTracker(int width, int height, const TrackerOptions& options, ThreadPool* pool) {
+  if (options.method == "klt") return std::make_unique<KltTracker>(width, height, options, pool);
+  return std::make_unique<FeatureTracker>(width, height, options, pool);
+}
+
+std::string DescribePositions(const TrackerOptions& options) {
+  if (options.method != "klt") return "pixels of the raw sensor, each at the very instant of its stamp";
+  return Format("pixels of the raw sensor, in the image of the newest %d events at the stamp: half their time late",
+                options.klt.events);
+}
+
+}  // namespace evo
