@@ -1,7 +1,7 @@
 #include "evo/tracking/klt_tracker.hpp"
 
 #include <algorithm>
-#include <cstdlib>
+#include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 
@@ -11,33 +11,29 @@ namespace evo {
 
 namespace {
 
-constexpr int kLevels = 3;                 // below the full resolution
-constexpr double kSmoothingPx = 1.0;       // events are grainy
-constexpr double kWhite = 6.0;             // events in a pixel
-constexpr std::size_t kFeaturesAJob = 16;  // OpenCV takes them in batches
+constexpr int kLevels = 3;            // below the full resolution
+constexpr double kSmoothingPx = 1.0;  // events are grainy
+constexpr double kWhite = 6.0;        // events in a pixel
+constexpr std::size_t kFeaturesAJob = 16;
 
-double Env(const char* n, double v) { const char* e = std::getenv(n); return e ? std::atof(e) : v; }
-
-/// The 8-bit image that KLT wants, with square roots, which even out pixels that fire often and pixels that fire once.
+/// The 8-bit image that KLT wants. The square root evens out pixels that fire often and pixels that fire once.
 cv::Mat Gray(const cv::Mat& events) {
   cv::Mat smooth, gray;
-  const double white = Env("KW", kWhite);
-  if (Env("KS", 1) > 0) {
-    cv::sqrt(events, smooth);
-    cv::GaussianBlur(smooth, smooth, cv::Size(0, 0), Env("KB", kSmoothingPx));
-    smooth.convertTo(gray, CV_8U, 255.0 / std::sqrt(white));
-  } else {
-    cv::min(events, white, smooth);
-    cv::GaussianBlur(smooth, smooth, cv::Size(0, 0), Env("KB", kSmoothingPx));
-    smooth.convertTo(gray, CV_8U, 255.0 / white);
-  }
+  cv::sqrt(events, smooth);
+  cv::GaussianBlur(smooth, smooth, cv::Size(0, 0), kSmoothingPx);
+  smooth.convertTo(gray, CV_8U, 255.0 / std::sqrt(kWhite));
   return gray;
 }
 
 }  // namespace
 
 KltTracker::KltTracker(int width, int height, const TrackerOptions& options, ThreadPool* pool)
-    : options_(options), width_(width), height_(height), pool_(pool), refill_(options) {}
+    : options_(options),
+      width_(width),
+      height_(height),
+      patch_(2 * options.klt.patch_radius_px + 1, 2 * options.klt.patch_radius_px + 1),
+      pool_(pool),
+      refill_(options) {}
 
 cv::Mat KltTracker::EventImage(const EventHistory& history, TimeNs t) const {
   cv::Mat image = cv::Mat::zeros(history.height(), history.width(), CV_32F);
@@ -49,9 +45,8 @@ cv::Mat KltTracker::EventImage(const EventHistory& history, TimeNs t) const {
 
 void KltTracker::Process(const EventHistory& history, TimeNs t) {
   const cv::Mat events = EventImage(history, t);
-  const int side = 2 * options_.klt.patch_radius_px + 1;
   std::vector<cv::Mat> pyramid;
-  cv::buildOpticalFlowPyramid(Gray(events), pyramid, cv::Size(side, side), kLevels);
+  cv::buildOpticalFlowPyramid(Gray(events), pyramid, patch_, kLevels);
   if (!features_.empty()) Follow(pyramid);
   pyramid_ = std::move(pyramid);
   last_ = t;
@@ -60,33 +55,26 @@ void KltTracker::Process(const EventHistory& history, TimeNs t) {
 }
 
 void KltTracker::Follow(const std::vector<cv::Mat>& pyramid) {
-  const int side = 2 * options_.klt.patch_radius_px + 1;
-  const auto match = [&](const auto& from_image, const auto& to_image, const std::vector<cv::Point2f>& from,
-                         std::vector<cv::Point2f>* to, std::vector<unsigned char>* found) {
-    cv::calcOpticalFlowPyrLK(from_image, to_image, from, *to, *found, cv::noArray(), cv::Size(side, side), kLevels);
-  };
   const double b = options_.border_px;
   const auto inside = [&](const cv::Point2f& p) {
     return p.x >= b && p.y >= b && p.x <= width_ - 1 - b && p.y <= height_ - 1 - b;
   };
-  std::vector<char> alive(features_.size(), 0);
   pool_->ForEach((features_.size() + kFeaturesAJob - 1) / kFeaturesAJob, [&](std::size_t job) {
     const std::size_t first = job * kFeaturesAJob;
     const std::size_t end = std::min(first + kFeaturesAJob, features_.size());
     std::vector<cv::Point2f> before, now, back;
     std::vector<unsigned char> found, found_back;
     for (std::size_t i = first; i < end; ++i) before.push_back(features_[i].position);
-    match(pyramid_, pyramid, before, &now, &found);
-    match(pyramid, pyramid_, now, &back, &found_back);
+    cv::calcOpticalFlowPyrLK(pyramid_, pyramid, before, now, found, cv::noArray(), patch_, kLevels);
+    cv::calcOpticalFlowPyrLK(pyramid, pyramid_, now, back, found_back, cv::noArray(), patch_, kLevels);
     for (std::size_t i = first; i < end; ++i) {
       const std::size_t k = i - first;
       const bool returned = cv::norm(back[k] - before[k]) <= options_.klt.forward_backward_px;
-      alive[i] = found[k] && found_back[k] && returned && inside(now[k]) ? 1 : 0;
       features_[i].position = now[k];
+      features_[i].alive = found[k] && found_back[k] && returned && inside(now[k]);
     }
   });
-  std::size_t i = 0;
-  std::erase_if(features_, [&](const Feature&) { return !alive[i++]; });
+  std::erase_if(features_, [](const Feature& feature) { return !feature.alive; });
 }
 
 void KltTracker::Refill(const cv::Mat& events) {
@@ -94,7 +82,8 @@ void KltTracker::Refill(const cv::Mat& events) {
   for (const auto& feature : features_) taken.emplace_back(feature.position.x, feature.position.y);
   const int missing = options_.features - static_cast<int>(features_.size());
   for (const auto& corner : DetectCorners(events, taken, missing, options_)) {
-    features_.push_back({next_id_++, cv::Point2f(static_cast<float>(corner.x()), static_cast<float>(corner.y()))});
+    features_.push_back(
+        {next_id_++, cv::Point2f(static_cast<float>(corner.x()), static_cast<float>(corner.y())), true});
   }
 }
 

@@ -13,8 +13,9 @@ std::unique_ptr<Tracker> MakeTracker(int width, int height, const TrackerOptions
 
 std::string DescribePositions(const TrackerOptions& options) {
   if (options.method != "klt") return "pixels of the raw sensor, each at the very instant of its stamp";
-  return Format("pixels of the raw sensor, in the image of the newest %d events at the stamp: half their time late",
-                options.klt.events);
+  return Format(
+      "pixels of the raw sensor, in the image of the newest %d events, so late by half the time that these take",
+      options.klt.events);
 }
 
 }  // namespace evo

@@ -3,7 +3,8 @@
 namespace evo {
 
 void Register(Parameters& parameters, TrackerOptions& o) {
-  parameters.Add("tracker.method", &o.method, {"em", "klt"}, "expectation maximisation, or the baseline: KLT on images");
+  parameters.Add("tracker.method", &o.method, {"em", "klt"},
+                 "expectation maximisation, or the baseline: KLT on images");
   parameters.Add("tracker.frame_interval_s", &o.frame_interval_s, 0.001, 1.0, "time between two event frames (s)");
   parameters.Add("tracker.features", &o.features, 8, 2000, "live features to aim at");
   parameters.Add("tracker.refill_below", &o.refill_below, 0.0, 1.0, "detect when fewer than this share is alive");

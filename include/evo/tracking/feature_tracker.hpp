@@ -25,8 +25,8 @@ struct TrackedFeature {
   int frames = 1;                                        ///< lifetime so far
 };
 
-/// Tracks features by expectation maximisation. The positions reported are those at the very instant of the event frame,
-/// whatever the window of each feature.
+/// Tracks features by expectation maximisation. The positions reported are those at the very instant of the event
+/// frame, whatever the window of each feature.
 class FeatureTracker : public Tracker {
  public:
   FeatureTracker(int width, int height, const TrackerOptions& options, ThreadPool* pool);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
 #include <vector>
 
@@ -29,6 +28,7 @@ class KltTracker : public Tracker {
   struct Feature {
     std::int64_t id;
     cv::Point2f position;
+    bool alive;
   };
 
   cv::Mat EventImage(const EventHistory& history, TimeNs t) const;
@@ -39,6 +39,7 @@ class KltTracker : public Tracker {
   TrackerOptions options_;
   int width_;
   int height_;
+  cv::Size patch_;
   ThreadPool* pool_;
   RefillPolicy refill_;
   std::vector<cv::Mat> pyramid_;  // of the frame before

@@ -8,10 +8,10 @@ namespace evo {
 
 /// Parameters of the baseline, KLT on event images.
 struct KltOptions {
-  int events = 30000;               ///< newest events in an image
-  double longest_window_s = 0.1;    ///< none older than this; with many events, images of a fixed time
-  int patch_radius_px = 10;         ///< half the side of a feature's patch: 21 x 21 px
-  double forward_backward_px = 1.0; ///< lost if tracking back ends farther than this from where it came from
+  int events = 30000;                ///< newest events in an image
+  double longest_window_s = 0.1;     ///< none older than this; with many events, images of a fixed time
+  int patch_radius_px = 10;          ///< half the side of a feature's patch: 21 x 21 px
+  double forward_backward_px = 1.0;  ///< lost if tracking back ends farther than this from where it came from
 };
 
 /// Parameters of the feature tracker (Zhu, Atanasov, Daniilidis: Event-based feature tracking with probabilistic data
