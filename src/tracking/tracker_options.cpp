@@ -37,7 +37,7 @@ void Register(Parameters& parameters, TrackerOptions& o) {
   parameters.Add("tracker.corner_share", &o.corner_share, 0.0, 1.0, "weakest corner as a share of a strong one");
   parameters.Add("tracker.corner_window_motion_px", &o.corner_window_motion_px, 0.5, 20.0, "in the corner image (px)");
   parameters.Add("tracker.fewest_cells", &o.fewest_cells, 0.0, 1000.0, "that a template's events fill (px)");
-  parameters.Add("tracker.klt.events", &o.klt.events, 100, 100000000, "newest events in an image, at most");
+  parameters.Add("tracker.klt.events", &o.klt.events, 100, 1000000, "newest events in an image, at most");
   parameters.Add("tracker.klt.longest_window_s", &o.klt.longest_window_s, 0.001, 2.0, "and none older than this (s)");
   parameters.Add("tracker.klt.patch_radius_px", &o.klt.patch_radius_px, 2, 40, "half the side of a patch (px)");
   parameters.Add("tracker.klt.forward_backward_px", &o.klt.forward_backward_px, 0.01, 20.0,

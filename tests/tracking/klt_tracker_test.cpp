@@ -18,7 +18,7 @@ using Eigen::Vector2d;
 using evo::testing::CrossScene;
 using evo::testing::MemoryReader;
 
-constexpr int kAnyNumber = 100'000'000;
+constexpr int kAnyNumber = 1'000'000;
 
 /// Images of the newest `events`, none older than `longest_window_s`.
 TrackerOptions KltWith(int events, double longest_window_s) {
