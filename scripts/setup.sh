@@ -6,8 +6,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 packages=(
   cmake ninja-build g++
-  libeigen3-dev libopencv-core-dev libopencv-imgproc-dev libyaml-cpp-dev libcli11-dev libhdf5-dev libssl-dev
-  libpng-dev libspdlog-dev nlohmann-json3-dev
+  libeigen3-dev libopencv-core-dev libopencv-imgproc-dev libopencv-video-dev libyaml-cpp-dev libcli11-dev
+  libhdf5-dev libssl-dev libpng-dev libspdlog-dev nlohmann-json3-dev
   libgtest-dev # the tests
   gnuplot-nox  # the plots, at run time
   make         # scripts/sweep.mk

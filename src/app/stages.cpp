@@ -17,6 +17,7 @@
 #include "evo/report/figures.hpp"
 #include "evo/report/latex_tables.hpp"
 #include "evo/report/tables.hpp"
+#include "evo/tracking/tracker.hpp"
 
 namespace evo::app {
 
@@ -114,7 +115,7 @@ TrackingOutcome RunTrackingStage(StageContext* context, Recording* recording) {
   outcome.lifetimes = ComputeLifetimes(outcome.result.tracks, outcome.result.frames);
   context->record.Time("write_tracks", [&] {
     WriteTracks(context->options.out / "tracks.txt", outcome.result.tracks,
-                {"pixels of the raw sensor, each at the very instant of its stamp"});
+                {DescribePositions(context->config.tracker)});
     WriteLifetimes(context->options.out / "lifetime.csv", outcome.lifetimes);
     WriteText(context->options.out / "tables" / "lifetime.tex",
               LifetimeTable(SequenceName(recording->events), outcome.lifetimes));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 namespace evo {
@@ -93,6 +94,24 @@ void EventHistory::DropBefore(TimeNs t) {
     spare_.push_back(std::move(slices_.front()));
     slices_.pop_front();
   }
+}
+
+TimeNs EventHistory::BeginOfNewest(TimeNs end, std::size_t count) const {
+  std::vector<TimeNs> stamps;  // of the slice at hand
+  for (auto slice = slices_.rbegin(); slice != slices_.rend() && count > 0; ++slice) {
+    if (slice->begin >= end) continue;
+    stamps.clear();
+    for (const Entry& entry : slice->entries) {
+      if (slice->begin + entry.offset_ns < end) stamps.push_back(slice->begin + entry.offset_ns);
+    }
+    if (count <= stamps.size()) {
+      const auto first = stamps.begin() + static_cast<std::ptrdiff_t>(count - 1);
+      std::ranges::nth_element(stamps, first, std::greater<>());
+      return *first;
+    }
+    count -= stamps.size();
+  }
+  return slices_.empty() || count == 0 ? end : slices_.front().begin;
 }
 
 void EventHistory::Gather(const MovingPatch& patch, LocalEvents* local) const {

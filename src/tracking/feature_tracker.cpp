@@ -28,7 +28,12 @@ void Vote(const LocalEvents& events, const PatchMotion& motion, DensityMap* map)
 }  // namespace
 
 FeatureTracker::FeatureTracker(int width, int height, const TrackerOptions& options, ThreadPool* pool)
-    : options_(options), width_(width), height_(height), pool_(pool), flow_field_(width, height, options) {}
+    : options_(options),
+      width_(width),
+      height_(height),
+      pool_(pool),
+      flow_field_(width, height, options),
+      refill_(options) {}
 
 void FeatureTracker::Process(const EventHistory& history, TimeNs t) {
   if (last_) {
@@ -43,13 +48,17 @@ void FeatureTracker::Process(const EventHistory& history, TimeNs t) {
     }
     features_.erase(features_.begin() + static_cast<std::ptrdiff_t>(kept), features_.end());
   }
-  ++frames_since_refill_;
-  detected_ = (!last_ || frames_since_refill_ >= options_.frames_between_refills) &&
-              static_cast<double>(features_.size()) < options_.refill_below * options_.features;
   last_ = t;
-  if (!detected_) return;
-  frames_since_refill_ = 0;
-  Refill(history, t);
+  detected_ = refill_.IsDue(features_.size());
+  if (detected_) Refill(history, t);
+}
+
+Tracks FeatureTracker::Observations() const {
+  Tracks observations;
+  for (const auto& feature : features_) {
+    observations.push_back({feature.id, *last_, feature.position.x(), feature.position.y()});
+  }
+  return observations;
 }
 
 bool FeatureTracker::Track(const EventHistory& history, TimeNs t, TrackedFeature* feature) const {

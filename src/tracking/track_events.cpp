@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "evo/core/error.hpp"
+#include "evo/tracking/tracker.hpp"
 
 namespace evo {
 
@@ -26,21 +27,21 @@ TrackingResult TrackEvents(EventReader* reader, int width, int height, const Tra
                            const std::function<void(const TrackingView&)>& observe) {
   // Its variants for newer processors round differently: the tracks would depend on the machine.
   cv::setUseOptimized(false);
+  cv::setNumThreads(1);  // the pool's threads are all that were asked for
   EventHistory history(width, height, kSlice);
-  FeatureTracker tracker(width, height, options, pool);
+  const std::unique_ptr<Tracker> tracker = MakeTracker(width, height, options, pool);
   TrackingResult result;
   const TimeNs interval = FromSeconds(options.frame_interval_s);
   const TimeNs half_window = FromSeconds(0.5 * options.longest_window_s);
 
   const auto process = [&](TimeNs t) {
-    history.DropBefore(t - half_window);
-    tracker.Process(history, t);
+    history.DropBefore(t - tracker->before());
+    tracker->Process(history, t);
     result.frames.push_back(t);
-    if (tracker.detected()) ++result.key_frames;
-    for (const auto& feature : tracker.features()) {
-      result.tracks.push_back({feature.id, t, feature.position.x(), feature.position.y()});
-    }
-    if (observe) observe({history, tracker, result.tracks, t});
+    if (tracker->detected()) ++result.key_frames;
+    const Tracks observations = tracker->Observations();
+    result.tracks.insert(result.tracks.end(), observations.begin(), observations.end());
+    if (observe) observe({history, result.tracks, t});
   };
 
   // One block is decoded while the one before it is tracked.
@@ -58,7 +59,7 @@ TrackingResult TrackEvents(EventReader* reader, int width, int height, const Tra
     last = block.t.back();
     result.events += block.size();
     history.Append(block);
-    for (; *frame + half_window + kSlice <= last; *frame += interval) process(*frame);
+    for (; *frame + tracker->after() + kSlice <= last; *frame += interval) process(*frame);
     if (progress) progress(reader->progress());
   }
   history.Finish();

@@ -3,6 +3,8 @@
 namespace evo {
 
 void Register(Parameters& parameters, TrackerOptions& o) {
+  parameters.Add("tracker.method", &o.method, {"em", "klt"},
+                 "expectation maximisation, or the baseline: KLT on images");
   parameters.Add("tracker.frame_interval_s", &o.frame_interval_s, 0.001, 1.0, "time between two event frames (s)");
   parameters.Add("tracker.features", &o.features, 8, 2000, "live features to aim at");
   parameters.Add("tracker.refill_below", &o.refill_below, 0.0, 1.0, "detect when fewer than this share is alive");
@@ -35,6 +37,11 @@ void Register(Parameters& parameters, TrackerOptions& o) {
   parameters.Add("tracker.corner_share", &o.corner_share, 0.0, 1.0, "weakest corner as a share of a strong one");
   parameters.Add("tracker.corner_window_motion_px", &o.corner_window_motion_px, 0.5, 20.0, "in the corner image (px)");
   parameters.Add("tracker.fewest_cells", &o.fewest_cells, 0.0, 1000.0, "that a template's events fill (px)");
+  parameters.Add("tracker.klt.events", &o.klt.events, 100, 1000000, "newest events in an image, at most");
+  parameters.Add("tracker.klt.longest_window_s", &o.klt.longest_window_s, 0.001, 2.0, "and none older than this (s)");
+  parameters.Add("tracker.klt.patch_radius_px", &o.klt.patch_radius_px, 2, 40, "half the side of a patch (px)");
+  parameters.Add("tracker.klt.forward_backward_px", &o.klt.forward_backward_px, 0.01, 20.0,
+                 "lost if tracking back ends farther off (px)");
 }
 
 }  // namespace evo

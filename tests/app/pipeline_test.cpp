@@ -109,6 +109,17 @@ TEST_F(PipelineTest, SameBytesWhateverVariantsOpenCvWouldChoose) {
   ExpectSameBytes("this", "older", {"tracks.txt", "lifetime.csv", "trajectory.txt", "map.ply"});
 }
 
+TEST_F(PipelineTest, TheBaselineRunsFromEndToEnd) {
+  const std::string klt = " --set tracker.method=klt --threads ";
+  ASSERT_EQ(Run("run -q --draw-every 1 --events " + Quote(Sample()) + To("klt") + klt + "1"), 0) << err;
+  EXPECT_NE(ReadFile(folder / "klt" / "tracks.txt").find("newest 30000 events"), std::string::npos);
+  EXPECT_GT(MeanLifetime("klt"), 10.0);
+  EXPECT_GE(std::stod(Summary("klt", "sim3")["coverage"]), 0.8);
+  EXPECT_EQ(CountFiles(folder / "klt" / "images"), 2 * 5);
+  ASSERT_EQ(Run("track " + Blind() + To("older") + klt + "3", "export OPENCV_CPU_DISABLE=AVX2,FMA3;"), 0) << err;
+  ExpectSameBytes("klt", "older", {"tracks.txt", "lifetime.csv"});
+}
+
 TEST_F(PipelineTest, StageByStageGivesWhatRunGives) {
   ASSERT_EQ(Run("run --no-plots --to 0.9 --events " + Quote(Sample()) + To("whole")), 0) << err;
   ASSERT_EQ(Run("track " + Blind() + "--to 0.9" + To("stages")), 0) << err;

@@ -28,6 +28,21 @@ EventColumns RandomEvents(std::size_t count, TimeNs begin, TimeNs end) {
   return events;
 }
 
+TEST(EventHistory, FindsWhereTheNewestEventsBegin) {
+  const EventColumns events = RandomEvents(3000, -10'000'000, 5'000'000);
+  EventHistory history(kWidth, kHeight, kSlice);
+  EXPECT_EQ(history.BeginOfNewest(7, 10), 7);
+  history.Append(events);
+  history.Finish();
+  for (const TimeNs end : {-9'000'000, -3'000'000, 0, 1'234'567, 5'000'000, 8'000'000}) {
+    const auto before = std::ranges::lower_bound(events.t, end) - events.t.begin();
+    for (const std::ptrdiff_t count : {1, 2, 150, 999, 2000}) {
+      const TimeNs expected = count <= before ? events.t[static_cast<std::size_t>(before - count)] : -10'000'000;
+      EXPECT_EQ(history.BeginOfNewest(end, static_cast<std::size_t>(count)), expected) << end << ' ' << count;
+    }
+  }
+}
+
 using Row = std::tuple<float, float, float, int>;
 
 std::vector<Row> Sorted(const LocalEvents& local) {

@@ -48,6 +48,10 @@ class EventHistory {
   /// Replaces `local` by the events of `patch`, slice by slice and tile by tile (the order is fixed, not by time).
   void Gather(const MovingPatch& patch, LocalEvents* local) const;
 
+  /// The latest stamp from which on there are `count` events before `end`, or the oldest slice's begin if there are not
+  /// so many.
+  TimeNs BeginOfNewest(TimeNs end, std::size_t count) const;
+
   /// Calls visit(x, y, t, polarity) for every event of [begin, end).
   template <typename Visitor>
   void ForEachBetween(TimeNs begin, TimeNs end, Visitor visit) const {

@@ -7,11 +7,10 @@
 
 #include "evo/core/parallel.hpp"
 #include "evo/events/event_history.hpp"
-#include "evo/io/tracks.hpp"
 #include "evo/tracking/density_map.hpp"
 #include "evo/tracking/em_affine.hpp"
 #include "evo/tracking/flow_field.hpp"
-#include "evo/tracking/tracker_options.hpp"
+#include "evo/tracking/tracker.hpp"
 
 namespace evo {
 
@@ -26,18 +25,17 @@ struct TrackedFeature {
   int frames = 1;                                        ///< lifetime so far
 };
 
-/// Tracks features from event frame to event frame. An event frame is an instant with a window of events around it; the
-/// positions reported are those at that very instant, whatever the window of each feature.
-class FeatureTracker {
+/// Tracks features by expectation maximisation. The positions reported are those at the very instant of the event
+/// frame, whatever the window of each feature.
+class FeatureTracker : public Tracker {
  public:
   FeatureTracker(int width, int height, const TrackerOptions& options, ThreadPool* pool);
 
-  /// Takes all features to the frame at `t`; `history` must hold the longest window around it.
-  void Process(const EventHistory& history, TimeNs t);
-
-  const std::vector<TrackedFeature>& features() const { return features_; }
-  /// Whether the last frame was a key frame, where new features were detected.
-  bool detected() const { return detected_; }
+  void Process(const EventHistory& history, TimeNs t) override;
+  TimeNs before() const override { return FromSeconds(0.5 * options_.longest_window_s); }
+  TimeNs after() const override { return before(); }
+  Tracks Observations() const override;
+  bool detected() const override { return detected_; }
 
  private:
   /// False if the feature is lost.
@@ -56,11 +54,11 @@ class FeatureTracker {
   int height_;
   ThreadPool* pool_;
   FlowField flow_field_;
+  RefillPolicy refill_;
   std::vector<TrackedFeature> features_;
   std::int64_t next_id_ = 0;
   std::optional<TimeNs> last_;
   bool detected_ = false;
-  int frames_since_refill_ = 0;
 };
 
 }  // namespace evo

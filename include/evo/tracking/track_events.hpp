@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "evo/core/parallel.hpp"
+#include "evo/events/event_history.hpp"
 #include "evo/io/event_reader.hpp"
 #include "evo/io/tracks.hpp"
-#include "evo/tracking/feature_tracker.hpp"
 #include "evo/tracking/tracker_options.hpp"
 
 namespace evo {
@@ -21,14 +21,14 @@ struct TrackingResult {
 /// What an observer of the tracker sees after each event frame, to draw it.
 struct TrackingView {
   const EventHistory& history;
-  const FeatureTracker& tracker;
   const Tracks& tracks;  ///< so far
   TimeNs t;
 };
 
 /// Tracks features through a whole stream of events: event frames every `frame_interval_s` from the first event of the
-/// stream, each as soon as the stream holds its longest window. Memory does not grow with the length of the stream but
-/// for the tracks. Throws Error (kNothingToDo) if the stream is shorter than one window.
+/// stream, each as soon as the stream holds the events that the tracker of `options.method` needs. Memory does not grow
+/// with the length of the stream but for the tracks. Throws Error (kNothingToDo) if the stream is shorter than one
+/// window.
 TrackingResult TrackEvents(EventReader* reader, int width, int height, const TrackerOptions& options, ThreadPool* pool,
                            const std::function<void(double)>& progress,
                            const std::function<void(const TrackingView&)>& observe = {});

@@ -1,12 +1,23 @@
 #pragma once
 
+#include <string>
+
 #include "evo/core/parameters.hpp"
 
 namespace evo {
 
+/// Parameters of the baseline, KLT on event images.
+struct KltOptions {
+  int events = 30000;                ///< newest events in an image
+  double longest_window_s = 0.1;     ///< none older than this; with many events, images of a fixed time
+  int patch_radius_px = 10;          ///< half the side of a feature's patch: 21 x 21 px
+  double forward_backward_px = 1.0;  ///< lost if tracking back ends farther than this from where it came from
+};
+
 /// Parameters of the feature tracker (Zhu, Atanasov, Daniilidis: Event-based feature tracking with probabilistic data
 /// association, ICRA 2017). One set serves all data sets.
 struct TrackerOptions {
+  std::string method = "em";       ///< em or klt
   double frame_interval_s = 0.02;  ///< time between two event frames
   int features = 150;              ///< live features to aim at
   double refill_below = 0.9;       ///< detect new ones when fewer than this share is alive: a key frame
@@ -44,6 +55,8 @@ struct TrackerOptions {
   double corner_share = 0.02;       ///< weakest corner accepted, as a share of a strong one (95th percentile)
   double corner_window_motion_px = 3.0;
   double fewest_cells = 8.0;  ///< px that a template's events fill: a hot pixel fills one
+
+  KltOptions klt;
 };
 
 void Register(Parameters& parameters, TrackerOptions& options);

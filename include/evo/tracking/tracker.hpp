@@ -1,0 +1,57 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "evo/core/parallel.hpp"
+#include "evo/events/event_history.hpp"
+#include "evo/io/tracks.hpp"
+#include "evo/tracking/tracker_options.hpp"
+
+namespace evo {
+
+/// Follows features from event frame to event frame. An event frame is an instant with a window of events around it.
+class Tracker {
+ public:
+  virtual ~Tracker() = default;
+
+  /// Takes all features to the frame at `t`; `history` must hold the events of [t - before(), t + after()].
+  virtual void Process(const EventHistory& history, TimeNs t) = 0;
+  virtual TimeNs before() const = 0;
+  virtual TimeNs after() const = 0;
+
+  /// The live features in the last frame, by ascending id.
+  virtual Tracks Observations() const = 0;
+  /// Whether the last frame was a key frame, where new features were detected.
+  virtual bool detected() const = 0;
+};
+
+/// The tracker of `options.method`.
+std::unique_ptr<Tracker> MakeTracker(int width, int height, const TrackerOptions& options, ThreadPool* pool);
+
+/// What the positions of that tracker are, one line for the head of a track file.
+std::string DescribePositions(const TrackerOptions& options);
+
+/// When to look for new features: as soon as too few are alive, but not in every frame.
+class RefillPolicy {
+ public:
+  explicit RefillPolicy(const TrackerOptions& options)
+      : fewest_(options.refill_below * options.features),
+        pause_(options.frames_between_refills),
+        frames_since_refill_(pause_) {}
+
+  /// To be asked once in each frame.
+  bool IsDue(std::size_t alive) {
+    ++frames_since_refill_;
+    const bool due = frames_since_refill_ >= pause_ && static_cast<double>(alive) < fewest_;
+    if (due) frames_since_refill_ = 0;
+    return due;
+  }
+
+ private:
+  double fewest_;
+  int pause_;
+  int frames_since_refill_;
+};
+
+}  // namespace evo
