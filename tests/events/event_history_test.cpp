@@ -13,7 +13,6 @@ namespace {
 
 constexpr int kWidth = 50;
 constexpr int kHeight = 37;
-constexpr TimeNs kSlice = 1'000'000;
 
 EventColumns RandomEvents(std::size_t count, TimeNs begin, TimeNs end) {
   std::mt19937 random(7);
@@ -41,10 +40,9 @@ std::vector<Row> Sorted(const LocalEvents& local) {
 TEST(EventHistory, GathersExactlyTheEventsOfAMovingPatch) {
   // Stamps on both sides of zero and a gap without events.
   EventColumns events = RandomEvents(3000, -10'000'000, 5'000'000);
-  EventHistory history(kWidth, kHeight, kSlice);
+  EventHistory history(kWidth, kHeight);
   history.Append(events);
   history.Append(RandomEvents(1000, 9'500'000, 12'000'000));
-  history.Finish();
   const EventColumns later = RandomEvents(1000, 9'500'000, 12'000'000);
   for (std::size_t i = 0; i < later.size(); ++i) {
     events.push_back(later.t[i], later.x[i], later.y[i], later.polarity[i]);
@@ -78,7 +76,7 @@ TEST(EventHistory, GathersExactlyTheEventsOfAMovingPatch) {
 
 TEST(EventHistory, DoesNotDependOnHowTheStreamIsCutIntoBlocks) {
   const EventColumns events = RandomEvents(2000, 0, 20'000'000);
-  EventHistory whole(kWidth, kHeight, kSlice), pieces(kWidth, kHeight, kSlice);
+  EventHistory whole(kWidth, kHeight), pieces(kWidth, kHeight);
   whole.Append(events);
   EventColumns piece;
   for (std::size_t i = 0; i < events.size(); ++i) {
@@ -89,8 +87,6 @@ TEST(EventHistory, DoesNotDependOnHowTheStreamIsCutIntoBlocks) {
     }
   }
   pieces.Append(piece);
-  whole.Finish();
-  pieces.Finish();
   LocalEvents a, b;
   const MovingPatch patch{10'000'000, 25, 18, 100, 50, 10, 10'000'000};
   whole.Gather(patch, &a);
@@ -101,9 +97,8 @@ TEST(EventHistory, DoesNotDependOnHowTheStreamIsCutIntoBlocks) {
 
 TEST(EventHistory, ForgetsWhatIsDropped) {
   const EventColumns events = RandomEvents(2000, 0, 20'000'000);
-  EventHistory history(kWidth, kHeight, kSlice);
+  EventHistory history(kWidth, kHeight);
   history.Append(events);
-  history.Finish();
   const auto count = [&](TimeNs begin, TimeNs end) {
     std::ptrdiff_t visited = 0;
     history.ForEachBetween(begin, end, [&](int, int, TimeNs, std::int8_t) { ++visited; });

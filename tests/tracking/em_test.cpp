@@ -58,9 +58,8 @@ TEST(EstimateFlow, FindsSlowAndFastFlowsFromNothing) {
   const evo::testing::CrossScene scene(60, 11);
   const TrackerOptions options;
   for (const Vector2d& truth : {Vector2d(30, -10), Vector2d(120, 60), Vector2d(-350, 100)}) {
-    EventHistory history(scene.width, scene.height, 2'000'000);
+    EventHistory history(scene.width, scene.height);
     history.Append(scene.Events([&](double t) { return Vector2d(truth * (t - 0.1)); }, 0.2, 1000.0));
-    history.Finish();
     int good = 0;
     int estimated = 0;
     for (int x = 25; x < scene.width - 20; x += 17) {
@@ -78,7 +77,7 @@ TEST(EstimateFlow, FindsSlowAndFastFlowsFromNothing) {
 }
 
 TEST(EstimateFlow, SaysWhereThereIsNothing) {
-  const EventHistory history(50, 50, 2'000'000);
+  const EventHistory history(50, 50);
   Vector2d flow = Vector2d::Zero();
   EXPECT_FALSE(EstimateFlow(history, 0, 25, 25, TrackerOptions{}, &flow));
 }
