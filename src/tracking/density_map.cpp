@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numeric>
 
 namespace evo {
@@ -12,12 +13,21 @@ namespace {
 // Where the density is nearly flat and nearly nothing the mean shift is unreliable: limit it to this many sigmas.
 constexpr float kLongestPull = 2.5f;
 
+constexpr int kBlock = 8;  // cells computed at a time
+using Block = Eigen::Array<float, kBlock, 1>;
+using BlockMap = Eigen::Map<const Block>;
+
 }  // namespace
 
 DensityMap::DensityMap(int radius_px, int planes)
     : radius_(radius_px), planes_(planes), cells_(static_cast<std::size_t>(planes * side() * side()), 0.0f) {}
 
-double DensityMap::Total() const { return std::accumulate(cells_.begin(), cells_.end(), 0.0); }
+double DensityMap::Total() const {
+  Block sum = Block::Zero();
+  std::size_t i = 0;
+  for (; i + kBlock <= cells_.size(); i += kBlock) sum += BlockMap(&cells_[i]);
+  return std::accumulate(cells_.begin() + static_cast<std::ptrdiff_t>(i), cells_.end(), static_cast<double>(sum.sum()));
+}
 
 double DensityMap::EffectiveCells() const {
   const double squares = std::inner_product(cells_.begin(), cells_.end(), cells_.begin(), 0.0);
@@ -61,7 +71,7 @@ DensityMap DensityMap::Warped(const Eigen::Matrix2d& linear) const {
   return warped;
 }
 
-void AssociationField::Smooth(const float* plane, double sigma_px) {
+void AssociationField::MakeKernel(double sigma_px) {
   const int reach = std::min(radius_, static_cast<int>(std::ceil(3.0 * sigma_px)));
   kernel_.resize(static_cast<std::size_t>(reach) + 1);
   float sum = 0.0f;
@@ -70,54 +80,62 @@ void AssociationField::Smooth(const float* plane, double sigma_px) {
     sum += i ? 2.0f * kernel_[i] : kernel_[i];
   }
   for (float& k : kernel_) k /= sum;
+}
 
+void AssociationField::Convolve(const float* in, std::ptrdiff_t step, float* out) const {
+  const auto reach = static_cast<std::ptrdiff_t>(kernel_.size()) - 1;
+  for (int c = 0; c < width_; c += kBlock, in += kBlock, out += kBlock) {
+    Block sum = kernel_[0] * BlockMap(in);
+    for (std::ptrdiff_t i = 1; i <= reach; ++i) sum += kernel_[i] * (BlockMap(in - i * step) + BlockMap(in + i * step));
+    Eigen::Map<Block>{out} = sum;
+  }
+}
+
+void AssociationField::Smooth(const float* plane) {
+  const int reach = static_cast<int>(kernel_.size()) - 1;
   const int n = side_;
-  rows_.assign(static_cast<std::size_t>(n * n), 0.0f);
-  smooth_.assign(static_cast<std::size_t>(n * n), 0.0f);
+  const auto stride = static_cast<std::ptrdiff_t>(width_);
+  row_.assign(static_cast<std::size_t>(width_ + 2 * reach), 0.0f);
+  rows_.resize(static_cast<std::size_t>((n + 2 * reach) * width_));
+  std::fill_n(rows_.begin(), reach * stride, 0.0f);
+  std::fill_n(rows_.end() - reach * stride, reach * stride, 0.0f);
   for (int r = 0; r < n; ++r) {
-    const float* in = plane + r * n;
-    float* out = rows_.data() + r * n;
-    for (int i = -reach; i <= reach; ++i) {
-      const float k = kernel_[std::abs(i)];
-      const int begin = std::max(0, -i);
-      const int end = std::min(n, n - i);
-      for (int c = begin; c < end; ++c) out[c] += k * in[c + i];
-    }
+    std::copy_n(plane + r * n, n, row_.begin() + reach);
+    Convolve(row_.data() + reach, 1, rows_.data() + (r + reach) * stride);
   }
-  for (int r = 0; r < n; ++r) {
-    float* out = smooth_.data() + r * n;
-    for (int i = std::max(-reach, -r); i <= std::min(reach, n - 1 - r); ++i) {
-      const float k = kernel_[std::abs(i)];
-      const float* in = rows_.data() + (r + i) * n;
-      for (int c = 0; c < n; ++c) out[c] += k * in[c];
-    }
-  }
+  smooth_.resize(static_cast<std::size_t>(n * width_));
+  for (int r = 0; r < n; ++r) Convolve(rows_.data() + (r + reach) * stride, stride, smooth_.data() + r * stride);
 }
 
 void AssociationField::Build(const DensityMap& map, double sigma_px, double outlier_share) {
   radius_ = map.radius();
   side_ = map.side();
   const int n = side_;
-  table_.assign(static_cast<std::size_t>(map.planes() * n * n), Pull::Zero());
+  width_ = (n + kBlock - 1) / kBlock * kBlock;
+  MakeKernel(sigma_px);
+  const auto cells = static_cast<std::size_t>(map.planes() * n * n);
+  if (table_.size() != cells) table_.assign(cells, Pull::Zero());  // the cells at the edge stay zero
   const double mean_density = map.Total() / (map.planes() * n * n);
   const auto stray = static_cast<float>(std::max(1e-12, outlier_share * mean_density));
-  const auto variance = static_cast<float>(sigma_px * sigma_px);
+  const auto half_variance = static_cast<float>(0.5 * sigma_px * sigma_px);
   const auto longest = static_cast<float>(kLongestPull * sigma_px);
   for (int p = 0; p < map.planes(); ++p) {
-    Smooth(map.plane(p), sigma_px);
+    Smooth(map.plane(p));
     for (int r = 1; r + 1 < n; ++r) {
-      const auto density = [&](int dr, int dc) {
-        return Eigen::Map<const Eigen::ArrayXf>(smooth_.data() + (r + dr) * n + 1 + dc, n - 2);
-      };
-      weight_ = density(0, 0) / (density(0, 0) + stray);
-      y_ = 0.5f * variance / (density(0, 0) + 1e-3f * stray);
-      x_ = y_ * (density(0, 1) - density(0, -1));
-      y_ *= density(1, 0) - density(-1, 0);
-      scale_ = weight_ * longest / (x_.square() + y_.square()).max(longest * longest).sqrt();
-      x_ *= scale_;
-      y_ *= scale_;
-      Pull* row = table_.data() + (p * n + r) * n + 1;
-      for (int c = 0; c < n - 2; ++c) row[c] = Pull(weight_[c], x_[c], y_[c], 0.0f);
+      const float* density = smooth_.data() + r * width_;
+      float* pull = table_[(p * n + r) * n].data();
+      for (int c = 1; c + 1 < n; ++c) {
+        // The mean shift variance * gradient / density, times the probability density / (density + stray).
+        const float share = 1.0f / (density[c] + stray);
+        const float weight = density[c] * share;
+        const float limit = longest * weight;
+        const float x = half_variance * share * (density[c + 1] - density[c - 1]);
+        const float y = half_variance * share * (density[c + width_] - density[c - width_]);
+        pull[4 * c] = weight;
+        pull[4 * c + 1] = std::clamp(x, -limit, limit);
+        pull[4 * c + 2] = std::clamp(y, -limit, limit);
+        pull[4 * c + 3] = 0.0f;
+      }
     }
   }
 }

@@ -28,6 +28,9 @@ Moments Expect(const LocalEvents& events, const AssociationField& field, int pla
   const auto per_window = static_cast<float>(1.0 / options.half_window_s);
   const auto per_radius = static_cast<float>(1.0 / options.patch_radius_px);
   using Row = Eigen::Array4f;
+  // Added up, since four scalars stored and loaded as one row stall the processor.
+  const Row one(1.0f, 0.0f, 0.0f, 0.0f), in_window(0.0f, per_window, 0.0f, 0.0f);
+  const Row in_width(0.0f, 0.0f, per_radius, 0.0f), in_height(0.0f, 0.0f, 0.0f, per_radius);
   Row n0 = Row::Zero(), n1 = Row::Zero(), n2 = Row::Zero(), n3 = Row::Zero(), x = Row::Zero(), y = Row::Zero();
   float squares = 0.0f;
   for (std::size_t i = 0; i < events.size(); ++i) {
@@ -37,7 +40,7 @@ Moments Expect(const LocalEvents& events, const AssociationField& field, int pla
     const float v = inverse(1, 0) * rx + inverse(1, 1) * ry;
     const AssociationField::Pull pull = field.At(u, v, planes == 2 && events.polarity[i] < 0 ? 1 : 0);
     if (!(pull[0] > 0.0f)) continue;
-    const Row regressors(1.0f, per_window * events.dt[i], per_radius * u, per_radius * v);
+    const Row regressors = one + events.dt[i] * in_window + u * in_width + v * in_height;
     const Row weighted = pull[0] * regressors;
     n0 += weighted;
     n1 += regressors[1] * weighted;

@@ -12,8 +12,6 @@ namespace evo {
 
 namespace {
 
-constexpr TimeNs kSlice = 2'000'000;  // short against the shortest windows, long enough to fill the tiles
-
 void DropLoneObservations(Tracks* tracks) {
   std::unordered_map<std::int64_t, int> count;
   for (const auto& observation : *tracks) ++count[observation.id];
@@ -28,7 +26,7 @@ TrackingResult TrackEvents(EventReader* reader, int width, int height, const Tra
   // Its variants for newer processors round differently: the tracks would depend on the machine.
   cv::setUseOptimized(false);
   cv::setNumThreads(1);  // the pool's threads are all that were asked for
-  EventHistory history(width, height, kSlice);
+  EventHistory history(width, height);
   const std::unique_ptr<Tracker> tracker = MakeTracker(width, height, options, pool);
   TrackingResult result;
   const TimeNs interval = FromSeconds(options.frame_interval_s);
@@ -58,11 +56,18 @@ TrackingResult TrackEvents(EventReader* reader, int width, int height, const Tra
     if (!frame) frame = block.t.front() + std::min(half_window, interval);
     last = block.t.back();
     result.events += block.size();
-    history.Append(block);
-    for (; *frame + tracker->after() + kSlice <= last; *frame += interval) process(*frame);
+    for (std::size_t appended = 0; appended < block.size();) {
+      // No further than the next frame sees: the fewer events there are, the faster those of a patch are found.
+      const auto visible = std::ranges::upper_bound(block.t, *frame + tracker->after());
+      const auto end = static_cast<std::size_t>(visible - block.t.begin());
+      history.Append(block, appended, end);
+      appended = end;
+      if (appended == block.size()) break;
+      process(*frame);
+      *frame += interval;
+    }
     if (progress) progress(reader->progress());
   }
-  history.Finish();
   if (frame) {
     for (; *frame <= last; *frame += interval) process(*frame);
   }

@@ -13,7 +13,6 @@ namespace {
 
 constexpr int kWidth = 50;
 constexpr int kHeight = 37;
-constexpr TimeNs kSlice = 1'000'000;
 
 EventColumns RandomEvents(std::size_t count, TimeNs begin, TimeNs end) {
   std::mt19937 random(7);
@@ -30,10 +29,9 @@ EventColumns RandomEvents(std::size_t count, TimeNs begin, TimeNs end) {
 
 TEST(EventHistory, FindsWhereTheNewestEventsBegin) {
   const EventColumns events = RandomEvents(3000, -10'000'000, 5'000'000);
-  EventHistory history(kWidth, kHeight, kSlice);
+  EventHistory history(kWidth, kHeight);
   EXPECT_EQ(history.BeginOfNewest(7, 10), 7);
   history.Append(events);
-  history.Finish();
   for (const TimeNs end : {-9'000'000, -3'000'000, 0, 1'234'567, 5'000'000, 8'000'000}) {
     const auto before = std::ranges::lower_bound(events.t, end) - events.t.begin();
     for (const std::ptrdiff_t count : {1, 2, 150, 999, 2000}) {
@@ -56,10 +54,9 @@ std::vector<Row> Sorted(const LocalEvents& local) {
 TEST(EventHistory, GathersExactlyTheEventsOfAMovingPatch) {
   // Stamps on both sides of zero and a gap without events.
   EventColumns events = RandomEvents(3000, -10'000'000, 5'000'000);
-  EventHistory history(kWidth, kHeight, kSlice);
+  EventHistory history(kWidth, kHeight);
   history.Append(events);
   history.Append(RandomEvents(1000, 9'500'000, 12'000'000));
-  history.Finish();
   const EventColumns later = RandomEvents(1000, 9'500'000, 12'000'000);
   for (std::size_t i = 0; i < later.size(); ++i) {
     events.push_back(later.t[i], later.x[i], later.y[i], later.polarity[i]);
@@ -93,7 +90,7 @@ TEST(EventHistory, GathersExactlyTheEventsOfAMovingPatch) {
 
 TEST(EventHistory, DoesNotDependOnHowTheStreamIsCutIntoBlocks) {
   const EventColumns events = RandomEvents(2000, 0, 20'000'000);
-  EventHistory whole(kWidth, kHeight, kSlice), pieces(kWidth, kHeight, kSlice);
+  EventHistory whole(kWidth, kHeight), pieces(kWidth, kHeight);
   whole.Append(events);
   EventColumns piece;
   for (std::size_t i = 0; i < events.size(); ++i) {
@@ -104,8 +101,6 @@ TEST(EventHistory, DoesNotDependOnHowTheStreamIsCutIntoBlocks) {
     }
   }
   pieces.Append(piece);
-  whole.Finish();
-  pieces.Finish();
   LocalEvents a, b;
   const MovingPatch patch{10'000'000, 25, 18, 100, 50, 10, 10'000'000};
   whole.Gather(patch, &a);
@@ -116,9 +111,8 @@ TEST(EventHistory, DoesNotDependOnHowTheStreamIsCutIntoBlocks) {
 
 TEST(EventHistory, ForgetsWhatIsDropped) {
   const EventColumns events = RandomEvents(2000, 0, 20'000'000);
-  EventHistory history(kWidth, kHeight, kSlice);
+  EventHistory history(kWidth, kHeight);
   history.Append(events);
-  history.Finish();
   const auto count = [&](TimeNs begin, TimeNs end) {
     std::ptrdiff_t visited = 0;
     history.ForEachBetween(begin, end, [&](int, int, TimeNs, std::int8_t) { ++visited; });

@@ -66,9 +66,8 @@ TEST(DetectCorners, FindsNothingInAnEmptyImage) {
 TEST(CorrectedEventImage, IsSharperThanTheRawOne) {
   const evo::testing::CrossScene scene(40, 2);
   const TrackerOptions options;
-  EventHistory history(scene.width, scene.height, 2'000'000);
+  EventHistory history(scene.width, scene.height);
   history.Append(scene.Events([](double t) { return Vector2d(Vector2d(150.0, 150.0) * (t - 0.1)); }, 0.2, 1000.0));
-  history.Finish();
   ThreadPool pool(1);
   FlowField flow(scene.width, scene.height, options);
   const TimeNs t = 100'000'000;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
+#include <span>
 #include <vector>
 
 #include "evo/core/time.hpp"
@@ -17,7 +17,7 @@ struct LocalEvents {
   std::vector<std::int8_t> polarity;
 
   std::size_t size() const { return x.size(); }
-  void clear();
+  void resize(std::size_t count);
   /// Keeps an even sample of at most `count` events.
   void Thin(std::size_t count);
 };
@@ -32,35 +32,30 @@ struct MovingPatch {
   TimeNs half_window = 0;
 };
 
-/// The most recent events, binned by short slices of time and small tiles of the sensor, so that the events around a
-/// feature are found without looking at the others.
+/// The most recent events, each small tile of the sensor for itself in order of time, so that the events around a
+/// feature are found without looking at the others and lie side by side in memory.
 class EventHistory {
  public:
-  EventHistory(int width, int height, TimeNs slice_duration);
+  EventHistory(int width, int height);
 
-  /// `events` follow the ones appended before in time.
-  void Append(const EventColumns& events);
-  /// Makes the last, unfinished slice visible too. Append() may follow only with events of later slices.
-  void Finish();
-  /// Forgets slices that end before `t`.
+  /// Events [begin, end) of `events`, which follow the ones appended before in time.
+  void Append(const EventColumns& events, std::size_t begin, std::size_t end);
+  void Append(const EventColumns& events) { Append(events, 0, events.size()); }
+  /// Forgets the events before `t`.
   void DropBefore(TimeNs t);
 
-  /// Replaces `local` by the events of `patch`, slice by slice and tile by tile (the order is fixed, not by time).
+  /// Replaces `local` by the events of `patch`, tile by tile, in each by time.
   void Gather(const MovingPatch& patch, LocalEvents* local) const;
 
-  /// The latest stamp from which on there are `count` events before `end`, or the oldest slice's begin if there are not
-  /// so many.
+  /// The latest stamp from which on there are `count` events before `end`, or the oldest event's if there are not so
+  /// many.
   TimeNs BeginOfNewest(TimeNs end, std::size_t count) const;
 
-  /// Calls visit(x, y, t, polarity) for every event of [begin, end).
+  /// Calls visit(x, y, t, polarity) for every event of [begin, end), tile by tile, in each by time.
   template <typename Visitor>
   void ForEachBetween(TimeNs begin, TimeNs end, Visitor visit) const {
-    for (const Slice& slice : slices_) {
-      if (slice.begin >= end || slice.begin + slice_duration_ <= begin) continue;
-      for (const Entry& entry : slice.entries) {
-        const TimeNs t = slice.begin + entry.offset_ns;
-        if (t >= begin && t < end) visit(entry.x, entry.y, t, entry.polarity);
-      }
+    for (const Tile& tile : tiles_) {
+      for (const Entry& entry : tile.Between(begin, end)) visit(entry.x, entry.y, entry.t, entry.polarity);
     }
   }
 
@@ -69,28 +64,23 @@ class EventHistory {
 
  private:
   struct Entry {
-    std::int32_t offset_ns;  // after the slice's begin
+    TimeNs t;
     std::uint16_t x;
     std::uint16_t y;
     std::int8_t polarity;
   };
-  struct Slice {
-    TimeNs begin = 0;
-    std::vector<std::uint32_t> tile_begin;  // row-major, one past the end at the back
-    std::vector<Entry> entries;             // by tile, then time
-  };
+  struct Tile {
+    std::vector<Entry> entries;  // in order of time
+    std::size_t dropped = 0;     // entries at the front that are forgotten
 
-  std::size_t TileOf(const Entry& entry) const;
+    std::span<const Entry> Between(TimeNs begin, TimeNs end) const;
+  };
 
   int width_;
   int height_;
-  TimeNs slice_duration_;
-  std::size_t tile_columns_;
-  std::size_t tile_rows_;
-  std::deque<Slice> slices_;
-  std::vector<Slice> spare_;    // dropped slices, kept for their memory
-  std::vector<Entry> pending_;  // the slice being filled, in order of time
-  TimeNs pending_begin_ = 0;
+  std::size_t columns_;  // of tiles
+  std::size_t rows_;
+  std::vector<Tile> tiles_;  // row-major
 };
 
 }  // namespace evo

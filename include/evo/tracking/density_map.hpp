@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -83,13 +84,16 @@ class AssociationField {
                                          double patch_radius_px) const;
 
  private:
-  void Smooth(const float* plane, double sigma_px);
+  void MakeKernel(double sigma_px);
+  /// One row: the sum of kernel_[|i|] * in[c + i * step].
+  void Convolve(const float* in, std::ptrdiff_t step, float* out) const;
+  void Smooth(const float* plane);
 
   int radius_ = 0;
   int side_ = 0;
   std::vector<Pull> table_;  // per plane and cell
-  std::vector<float> kernel_, rows_, smooth_;
-  Eigen::ArrayXf weight_, x_, y_, scale_;  // of one row of cells
+  int width_ = 0;            // of a row below: side_ rounded up to whole blocks
+  std::vector<float> kernel_, row_, rows_, smooth_;
 };
 
 }  // namespace evo

@@ -19,12 +19,14 @@ struct FlowOptions {
 /// events; M step: flow += sum w dx dt / sum w dt^2, in closed form.
 class FlowEstimator {
  public:
-  FlowEstimator(int radius_px, int planes) : map_(radius_px, planes) {}
+  /// Of patches up to `radius_px`; cells larger than 1 px make it cheaper and coarser.
+  FlowEstimator(int radius_px, int planes, double cell_px);
 
   /// Refines `flow` (px/s); returns the share of events that belong to an edge under the final flow.
   double Refine(const LocalEvents& events, const FlowOptions& options, Eigen::Vector2d* flow);
 
  private:
+  double cell_px_;
   DensityMap map_;
   AssociationField field_;
 };
