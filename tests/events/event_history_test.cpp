@@ -35,7 +35,7 @@ TEST(EventHistory, FindsWhereTheNewestEventsBegin) {
   for (const TimeNs end : {-9'000'000, -3'000'000, 0, 1'234'567, 5'000'000, 8'000'000}) {
     const auto before = std::ranges::lower_bound(events.t, end) - events.t.begin();
     for (const std::ptrdiff_t count : {1, 2, 150, 999, 2000}) {
-      const TimeNs expected = count <= before ? events.t[static_cast<std::size_t>(before - count)] : -10'000'000;
+      const TimeNs expected = count <= before ? events.t[static_cast<std::size_t>(before - count)] : events.t.front();
       EXPECT_EQ(history.BeginOfNewest(end, static_cast<std::size_t>(count)), expected) << end << ' ' << count;
     }
   }
