@@ -7,19 +7,19 @@ usage() {
 Simulates scenes, runs evo-run on each and prints one table: what the sequence is like, what it cost to make, and how
 well it is tracked and followed. The same goes to OUT/scenes.csv, all plots to OUT/report/index.html.
 
-  scripts/bench_scenes.sh [OPTION...] [SCENE[:SECONDS]...]
+  scripts/bench_scenes.sh [OPTION...] [SCENE[:[FROM+]SECONDS]...]
 
   scripts/bench_scenes.sh                                       # all scenes of configs/scenes
-  scripts/bench_scenes.sh --seeds 1,2,3 driving_day driving_night:20
+  scripts/bench_scenes.sh --seeds 1,2,3 driving_night:20 driving_day:50+8
   scripts/bench_scenes.sh --out out/300 --set tracker.features=300 driving_day
   scripts/bench_scenes.sh --simulate-set sensor.threshold_on=0.3 --sequences out/sharp --out out/bench_sharp
   scripts/bench_scenes.sh --simulate-only --seeds 1,2 turns     # only make out/scenes/turns_1_8 and turns_2_8
 
-SCENE is a name in configs/scenes or the path of a scene file. Vehicles drive for SECONDS, other scenes last as long as
-their file says unless SECONDS are given. Sequences are kept as SEQUENCES/SCENE_SEED_SECONDS, MVSEC's layout for
-vehicles, UZH's for the others, results in OUT under the same name. Called again, it redoes only what was made from
-another scene file, other settings or, of the results, by another build. If a run fails its row says so, and the script
-ends with 1.
+SCENE is a name in configs/scenes or the path of a scene file, SECONDS is the length of what is simulated and FROM where
+in the scene it begins. Without them drives begin at the scene's start and end as --duration says; other scenes last as
+long as their file says. Sequences are kept as SEQUENCES/SCENE_SEED_SECONDS, in MVSEC's layout for vehicles and UZH's
+for the others, results in OUT under the same name. Called again, the script redoes only what was made from another scene
+file, other settings or, of the results, by another build. If a run fails its row says so, and the script ends with 1.
 
   --seeds LIST             of the worlds and their noise; default 1
   --duration SECONDS       of the drives; default 8
@@ -30,7 +30,7 @@ ends with 1.
   --out DIR                default out/bench_scenes
   --simulate-only          no runs, no table
   --anew                   make the sequences anew: needed where the simulator itself has changed
-  --delete                 delete the files of each sequence after use: 10 to 60 MB for a second of it
+  --delete                 delete the files of each sequence after use: 5 to 20 MB for a second of it
 
 EVO_RUN names the program; without it build/release is brought up to date and used.
 END
@@ -94,9 +94,10 @@ motion_of() {
     END { print kind, seconds }'
 }
 
-# simulate SCENE_FILE SEED SECONDS: sets `name` and makes $sequences/$name unless it is there and made from the same.
+# simulate SCENE_FILE SEED [FROM+]SECONDS: sets `name` and makes $sequences/$name unless it is there and made from the
+# same. The part may be empty.
 simulate() {
-  local scene=$1 seed=$2 seconds=$3 parameters kind whole format=mvsec
+  local scene=$1 seed=$2 part=$3 seconds=${3#*+} parameters kind whole format=mvsec from=()
   parameters=$("$EVO_RUN" simulate "$scene" --seed "$seed" "${simulate_settings[@]}" --print)
   read -r kind whole <<<"$(motion_of <<<"$parameters")"
   if [ "$kind" != vehicle ]; then
@@ -104,9 +105,10 @@ simulate() {
     seconds=${seconds:-$whole}
   fi
   seconds=${seconds:-$duration}
-  name=$(basename "$scene" .yaml)_${seed}_$seconds
+  [ "$part" = "$seconds" ] || [ -z "$part" ] || from=(--from "${part%%+*}")
+  name=$(basename "$scene" .yaml)_${seed}_${part:-$seconds}
   local folder=$sequences/$name
-  local made_from="$parameters"$'\n'"duration_s: $seconds, format: $format"
+  local made_from="$parameters"$'\n'"part: ${part:-$seconds}, format: $format"
   if [ "$made_from" = "$(cat "$folder/made_from.txt" 2>/dev/null)" ] && ! $anew; then
     # After --delete only this and the manifest are left, which is enough if the run is there, too.
     [ -n "$(find "$folder" -name '*_data.hdf5' -o -name events.txt)" ] || is_up_to_date && return
@@ -115,8 +117,8 @@ simulate() {
   fi
   rm -rf "$folder"
   echo "simulate   $folder" >&2
-  "$EVO_RUN" simulate "$scene" --seed "$seed" "${simulate_settings[@]}" --duration "$seconds" --format "$format" \
-    --out "$folder" --quiet >&2
+  "$EVO_RUN" simulate "$scene" --seed "$seed" "${simulate_settings[@]}" "${from[@]}" --duration "$seconds" \
+    --format "$format" --out "$folder" --quiet >&2
   printf '%s\n' "$made_from" >"$folder/made_from.txt"
 }
 
@@ -164,15 +166,15 @@ header=scene,seed,simulated_s,path_m,events,negative_per_positive,simulate_wall_
 header+=,coverage,rebootstraps,mean_planar_percent,max_planar_percent,sim3_mean_planar_percent,sim3_max_planar_percent
 header+=,lifetime_frames,lifetime_s,track_error_median_px,expected_feature_age_share,speed_x_real_time,run_cpu_s,failure
 
-# The row of the sequence `name` = SCENE_SEED_SECONDS. Simulated seconds are those of the name.
+# The row of the sequence `name` = SCENE_SEED_[FROM+]SECONDS.
 row() {
   local made=$sequences/$name/manifest.json run=$out/$name/manifest.json failure=""
-  local seconds=${name##*_} scene_seed=${name%_*} events positive
+  local part=${name##*_} scene_seed=${name%_*} events positive
   events=$(json "$made" events)
   positive=$(json "$made" positive_events)
   [ ! -e "$out/$name/failure.txt" ] || failure=$(tr ',"' ';'"'" <"$out/$name/failure.txt")
   local cells=(
-    "${scene_seed%_*}" "${scene_seed##*_}" "$seconds" "$(summary origin-scale path_m)" "$events"
+    "${scene_seed%_*}" "${scene_seed##*_}" "${part#*+}" "$(summary origin-scale path_m)" "$events"
     "$(awk -v n="$events" -v p="$positive" 'BEGIN { if (p > 0) printf "%.4f", (n - p) / p }')"
     "$(json "$made" simulate)" "$(json "$made" cpu_time_s)" "$(json "$made" peak_memory_mb)"
     "$(summary origin-scale coverage)" "$(summary origin-scale rebootstraps)"

@@ -208,7 +208,7 @@ TEST_F(BadInputTest, TracksOfAnotherSensor) {
 }
 
 TEST_F(BadInputTest, IntervalBehindTheEnd) {
-  ExpectRefusal("run --events " + Quote(Sample()) + " --from 60", kNothingToDo, {"street_data.hdf5", "1.49999"});
+  ExpectRefusal("run --events " + Quote(Sample()) + " --from 60", kNothingToDo, {"street_data.hdf5", "1.4999"});
   ExpectRefusal("run --events " + Quote(Sample()) + " --to 0.001", kNothingToDo, {"street_data.hdf5"});
 }
 
@@ -236,7 +236,7 @@ TEST_F(BadInputTest, NoCalibrationAtHand) {
 }
 
 TEST_F(BadInputTest, TruthOfAnotherTime) {
-  ExpectTruthRefused(kTrajectory, kNothingToDo, {"do not overlap", "1504650187.0"});
+  ExpectTruthRefused(kTrajectory, kNothingToDo, {"do not overlap", "1506117900.0"});
 }
 
 TEST_F(BadInputTest, TracksWithoutParallax) {

@@ -53,9 +53,11 @@ class EvoRunTest : public ::testing::Test {
 
   static std::string Quote(const std::filesystem::path& path) { return "'" + path.string() + "'"; }
 
-  /// The bundled sample, in which --events finds all files, or one file of it.
-  static std::filesystem::path Sample(const std::string& name = "") {
-    return std::filesystem::path(EVO_SOURCE_DIR) / "data_samples" / "street" / name;
+  /// The bundled street by day, in which --events finds all files, or one file of it.
+  static std::filesystem::path Sample(const std::string& name = "") { return BundledSequence("street") / name; }
+  /// street, night or handheld.
+  static std::filesystem::path BundledSequence(const std::string& name) {
+    return std::filesystem::path(EVO_SOURCE_DIR) / "data_samples" / name;
   }
 
   const std::filesystem::path folder =

@@ -1,4 +1,4 @@
-// The whole way from events to the error report, on the bundled sample.
+// The whole way from events to the error report, on the bundled sequences.
 #include <signal.h>
 
 #include <chrono>
@@ -46,6 +46,26 @@ class PipelineTest : public EvoRunTest {
     return found == std::string::npos ? 0.0 : std::stod(csv.substr(found + key.size()));
   }
 
+  struct Bounds {
+    double path_m = 0.0;
+    double origin_scale_percent = 0.0;  ///< mean planar error
+    double sim3_percent = 0.0;
+    double lifetime_frames = 0.0;
+  };
+
+  /// Every frame has a pose, nothing was lost, errors are smaller and lives longer than the bounds.
+  void ExpectQuality(const std::string& result, const Bounds& bounds) const {
+    auto origin_scale = Summary(result, "origin-scale");
+    auto sim3 = Summary(result, "sim3");
+    ASSERT_FALSE(origin_scale.empty() || sim3.empty());
+    EXPECT_EQ(origin_scale["rebootstraps"], "0");
+    EXPECT_GE(std::stod(origin_scale["coverage"]), 0.99);
+    EXPECT_NEAR(std::stod(origin_scale["path_m"]), bounds.path_m, 0.05 * bounds.path_m);
+    EXPECT_LT(std::stod(origin_scale["mean_planar_percent"]), bounds.origin_scale_percent);
+    EXPECT_LT(std::stod(sim3["mean_planar_percent"]), bounds.sim3_percent);
+    EXPECT_GT(MeanLifetime(result), bounds.lifetime_frames);
+  }
+
   /// Sorted.
   static std::vector<std::string> FileNames(const fs::path& directory) {
     std::vector<std::string> names;
@@ -73,13 +93,7 @@ class PipelineTest : public EvoRunTest {
 
 TEST_F(PipelineTest, RunKeepsItsQuality) {
   ASSERT_EQ(Run("run --events " + Quote(Sample()) + " --draw-every 1" + To("result")), 0) << err;
-  auto origin_scale = Summary("result", "origin-scale");
-  auto sim3 = Summary("result", "sim3");
-  EXPECT_GE(std::stod(origin_scale["coverage"]), 0.95);
-  EXPECT_NEAR(std::stod(origin_scale["path_m"]), 9.4, 0.1);
-  EXPECT_LT(std::stod(origin_scale["mean_planar_percent"]), 1.0);
-  EXPECT_LT(std::stod(sim3["mean_planar_percent"]), 0.5);
-  EXPECT_GT(MeanLifetime("result"), 20.0);
+  ExpectQuality("result", {.path_m = 5.83, .origin_scale_percent = 0.4, .sim3_percent = 0.1, .lifetime_frames = 15.0});
   for (const char* name : {"tracks.txt", "trajectory.txt", "map.ply", "errors.csv", "errors_sim3.csv", "summary.json",
                            "plots/trajectory.gp", "plots/axes.gp", "plots/errors.gp", "plots/errors_distance.gp",
                            "plots/errors_sim3.gp", "plots/lifetime.gp", "plots/lifetime_seconds.gp",
@@ -88,10 +102,20 @@ TEST_F(PipelineTest, RunKeepsItsQuality) {
   }
   EXPECT_EQ(CountFiles(folder / "result" / "images"), 2 * 5);  // at 0 and 1 s, four frames and their sheet each
   const auto manifest = nlohmann::json::parse(ReadFile(folder / "result" / "manifest.json"));
-  EXPECT_EQ(manifest["counts"]["events"], 982468);
+  EXPECT_EQ(manifest["counts"]["events"], 673887);
   EXPECT_EQ(manifest["inputs"].size(), 3u);
   EXPECT_TRUE(manifest["rebootstraps"].empty());
   EXPECT_NE(out.find("sim3"), std::string::npos) << out;
+}
+
+TEST_F(PipelineTest, RunKeepsItsQualityAtNight) {
+  ASSERT_EQ(Run("run --no-plots --events " + Quote(BundledSequence("night")) + To("result")), 0) << err;
+  ExpectQuality("result", {.path_m = 7.48, .origin_scale_percent = 0.8, .sim3_percent = 0.25, .lifetime_frames = 14.0});
+}
+
+TEST_F(PipelineTest, RunKeepsItsQualityInTheHand) {
+  ASSERT_EQ(Run("run --no-plots --events " + Quote(BundledSequence("handheld")) + To("result")), 0) << err;
+  ExpectQuality("result", {.path_m = 0.32, .origin_scale_percent = 3.0, .sim3_percent = 0.5, .lifetime_frames = 15.0});
 }
 
 TEST_F(PipelineTest, SameBytesForAnyNumberOfThreadsAndWithoutTheTruth) {

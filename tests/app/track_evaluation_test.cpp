@@ -34,6 +34,33 @@ class TrackEvaluationTest : public EvoRunTest {
     return values;
   }
 
+  /// Follows features of a bundled sequence and judges them by its depth maps.
+  std::map<std::string, std::string> JudgeTracks(const std::string& sequence, const std::string& truth,
+                                                 const std::string& calibration) {
+    const fs::path sample = BundledSequence(sequence);
+    EXPECT_EQ(Run("track -q --events " + Quote(sample) + To("tracks")), 0) << err;
+    EXPECT_EQ(Run("evaluate --tracks " + Quote(folder / "tracks" / "tracks.txt") + " --ground-truth " +
+                  Quote(sample / truth) + " --calibration " + Quote(sample / calibration) + To("quality")),
+              0)
+        << err;
+    return Quality("quality");
+  }
+
+  struct Bounds {
+    double judged = 0.0;          ///< tracks
+    double track_error_px = 0.0;  ///< median over the tracks of the mean error
+    double outlier_share = 0.0;   ///< of 5 px
+    double age_share = 0.0;       ///< expected feature age within 5 px over the time that the point is visible
+  };
+
+  static void ExpectQuality(const std::map<std::string, std::string>& quality, const Bounds& bounds) {
+    EXPECT_EQ(quality.at("truth "), "depth");
+    EXPECT_GT(std::stod(quality.at("tracks_judged ")), bounds.judged);
+    EXPECT_LT(std::stod(quality.at("track_error_median ")), bounds.track_error_px);
+    EXPECT_LT(std::stod(quality.at("outlier_share 5")), bounds.outlier_share);
+    EXPECT_GT(std::stod(quality.at("expected_feature_age_normalized 5")), bounds.age_share);
+  }
+
   /// A drive along a wall with tracks that are right but for `offset_px` from their second observation on.
   std::string SceneArguments(double offset_px, bool with_depth = true) const {
     const testing::TrackScene scene;
@@ -59,26 +86,25 @@ class TrackEvaluationTest : public EvoRunTest {
   }
 };
 
-TEST_F(TrackEvaluationTest, OurTracksOfTheSampleKeepTheirQuality) {
-  ASSERT_EQ(Run("track -q --events " + Quote(Sample()) + To("tracks")), 0) << err;
-  ASSERT_EQ(Run("evaluate --tracks " + Quote(folder / "tracks" / "tracks.txt") + " --ground-truth " +
-                Quote(Sample("street_gt.hdf5")) + " --calibration " + Quote(Sample("camchain-imucam-street.yaml")) +
-                To("quality")),
-            0)
-      << err;
-  auto quality = Quality("quality");
-  EXPECT_EQ(quality["truth "], "triangulated");
-  EXPECT_GT(std::stod(quality["tracks_judged "]), 200.0);
-  EXPECT_LT(std::stod(quality["track_error_median "]), 0.3);
-  EXPECT_LT(std::stod(quality["error_median 5"]), 0.4);
-  EXPECT_LT(std::stod(quality["outlier_share 5"]), 0.1);
-  EXPECT_GT(std::stod(quality["expected_feature_age 5"]), 0.5);
+TEST_F(TrackEvaluationTest, OurTracksOfTheStreetKeepTheirQuality) {
+  const auto quality = JudgeTracks("street", "street_gt.hdf5", "camchain-imucam-street.yaml");
+  ExpectQuality(quality, {.judged = 110.0, .track_error_px = 1.0, .outlier_share = 0.02, .age_share = 0.41});
   // The tables of lifetimes agree where every frame has tracks.
   const std::string lifetimes = ReadFile(folder / "quality" / "lifetime.csv");
   const std::string of_track = ReadFile(folder / "tracks" / "lifetime.csv");
   EXPECT_EQ(lifetimes.substr(lifetimes.find("\ntracks,")), of_track.substr(of_track.find("\ntracks,")));
   EXPECT_NE(ReadFile(folder / "quality" / "tables" / "lifetime.tex").find("Average lifetime (frames)"),
             std::string::npos);
+}
+
+TEST_F(TrackEvaluationTest, OurTracksOfTheNightKeepTheirQuality) {
+  ExpectQuality(JudgeTracks("night", "night_gt.hdf5", "camchain-imucam-night.yaml"),
+                {.judged = 80.0, .track_error_px = 1.3, .outlier_share = 0.04, .age_share = 0.47});
+}
+
+TEST_F(TrackEvaluationTest, OurTracksOfTheHandheldRoomKeepTheirQuality) {
+  ExpectQuality(JudgeTracks("handheld", "depth_gt.hdf5", "calib.txt"),
+                {.judged = 60.0, .track_error_px = 0.6, .outlier_share = 0.02, .age_share = 0.6});
 }
 
 TEST_F(TrackEvaluationTest, DepthMapsGiveTheErrorAndTheTrueAge) {
