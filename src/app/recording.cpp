@@ -78,7 +78,7 @@ Recording OpenRecording(const RecordingArguments& arguments, RunRecord* record) 
   }
   Camera camera = OpenCamera(calibration, arguments.sensor);
   auto reader = OpenEvents(files.events, interval, camera.width(), camera.height());
-  record->AddInput("events", files.events);
+  record->AddLargeInput("events", files.events);
   record->AddInput("calibration", calibration);
   return {std::move(camera), files.events, std::move(reader), interval, files.ground_truth};
 }

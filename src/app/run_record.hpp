@@ -2,6 +2,8 @@
 
 #include <chrono>
 #include <filesystem>
+#include <future>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -14,9 +16,14 @@ namespace evo::app {
 class RunRecord {
  public:
   RunRecord(const std::vector<std::string>& command_line, const Parameters& parameters);
+  ~RunRecord();
 
   /// Reads the file for its checksum. Throws Error (kInput).
   void AddInput(const std::string& role, const std::filesystem::path& path);
+  /// Reads the file for its checksum while the run goes on: recordings are tens of gigabytes.
+  void AddLargeInput(const std::string& role, const std::filesystem::path& path);
+  /// Waits for the checksums, which the manifest does not hold before. Throws Error (kInput).
+  void FinishChecksums();
   void AddCount(const std::string& name, std::size_t count);
   /// Calls `work`, notes its wall time under `stage` and returns what it returns.
   template <typename Work>
@@ -34,6 +41,13 @@ class RunRecord {
     std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
     ~Stopwatch();
   };
+  struct Checksum {
+    std::size_t input;  // index in the manifest
+    std::future<std::string> sha256;
+  };
+
+  std::stop_source stop_;  // a run that fails does not wait for its checksums
+  std::vector<Checksum> checksums_;
 };
 
 }  // namespace evo::app

@@ -72,7 +72,10 @@ StageContext::StageContext(const CommonOptions& common, StageOptions stage_optio
       guard(options.out),
       pool(common.threads) {}
 
-void StageContext::Finish() const { WriteManifest(options.out / "manifest.json", record.manifest); }
+void StageContext::Finish() {
+  record.FinishChecksums();
+  WriteManifest(options.out / "manifest.json", record.manifest);
+}
 
 void AddStageOptions(CLI::App& command, StageOptions& options) {
   command.add_option("--out", options.out, "folder for the results")->required()->type_name("DIR");

@@ -35,7 +35,7 @@ struct StageContext {
   StageContext(const CommonOptions& common, StageOptions stage_options, std::vector<std::string> results,
                const std::vector<std::string>& command_line);
   /// manifest.json, the last file that a command writes. Throws Error (kOutput).
-  void Finish() const;
+  void Finish();
 
   Config config;
   StageOptions options;

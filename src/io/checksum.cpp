@@ -21,7 +21,7 @@ struct FreeContext {
 
 }  // namespace
 
-std::string Sha256(const std::filesystem::path& path) {
+std::string Sha256(const std::filesystem::path& path, const std::stop_token& stop) {
   const ByteSource file(path);
   const std::unique_ptr<EVP_MD_CTX, FreeContext> context(EVP_MD_CTX_new());
   std::vector<char> buffer(kBufferBytes);
@@ -30,6 +30,7 @@ std::string Sha256(const std::filesystem::path& path) {
   for (std::size_t got = 0; good && (got = file.Read(offset, buffer.size(), buffer.data())) > 0;) {
     good = EVP_DigestUpdate(context.get(), buffer.data(), got) == 1;
     offset += static_cast<std::int64_t>(got);
+    if (stop.stop_requested()) return {};
   }
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
   unsigned size = 0;

@@ -9,6 +9,8 @@ namespace evo {
 namespace {
 
 constexpr double kSmallestStep = 0.01;  // px, of the offset; a few times that at the patch's and the window's edge
+// The template has an edge of some width itself, so a plain M step closes only part of the gap.
+constexpr double kOverRelaxation = 1.5;
 
 using Design = Eigen::Matrix4d;                  // over (1, dt / half window, u / radius, v / radius)
 using Correction = Eigen::Matrix<double, 4, 2>;  // the same rows, for x and y
@@ -83,6 +85,7 @@ AlignmentQuality AlignToTemplate(const LocalEvents& events, const AssociationFie
     Correction step = Correction::Zero();
     step.topRows(free) = normal.topLeftCorner(free, free).ldlt().solve(target.topRows(free));
     if (!step.allFinite()) return {};
+    step *= kOverRelaxation;
     moved += step;
 
     // Events should appear at u + b + g dt + M u, so the template lies where the inverse of that puts it.

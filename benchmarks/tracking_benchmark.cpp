@@ -1,0 +1,165 @@
+// The tracker's hot loops, on crosses that move as a whole: about 10 events/s a pixel, as on a driving car.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+
+#include "evo/tracking/corner_detector.hpp"
+#include "evo/tracking/em_affine.hpp"
+#include "evo/tracking/em_flow.hpp"
+#include "evo/tracking/flow_field.hpp"
+#include "tracking/synthetic_events.hpp"
+
+namespace evo {
+namespace {
+
+constexpr TimeNs kStamp = 100'000'000;
+constexpr TimeNs kHalfWindow = 20'000'000;
+constexpr double kPatchRadius = 8.0;
+
+const Eigen::Vector2d kFlow(90.0, 40.0);
+
+const testing::CrossScene& Scene() {
+  static const testing::CrossScene scene(60, 11);
+  return scene;
+}
+
+const EventColumns& SceneEvents() {
+  static const EventColumns events =
+      Scene().Events([](double t) { return Eigen::Vector2d(kFlow * (t - ToSeconds(kStamp))); }, 0.2, 500.0);
+  return events;
+}
+
+EventHistory MakeHistory() {
+  EventHistory history(Scene().width, Scene().height);
+  history.Append(SceneEvents());
+  return history;
+}
+
+/// A cross with others all around it.
+const Eigen::Vector2d& Centre() {
+  const Eigen::Vector2d middle(0.5 * Scene().width, 0.5 * Scene().height);
+  return *std::ranges::min_element(Scene().centres, {}, [&](const auto& centre) { return (centre - middle).norm(); });
+}
+
+LocalEvents GatherPatch(double radius) {
+  LocalEvents events;
+  MakeHistory().Gather({kStamp, Centre().x(), Centre().y(), kFlow.x(), kFlow.y(), radius, kHalfWindow}, &events);
+  events.Thin(static_cast<std::size_t>(TrackerOptions().most_events));
+  return events;
+}
+
+DensityMap MakeTemplate(const LocalEvents& events, int radius) {
+  DensityMap map(radius, 2);
+  const Eigen::Vector2f v = kFlow.cast<float>();
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    map.Vote(events.x[i] - v.x() * events.dt[i], events.y[i] - v.y() * events.dt[i], map.PlaneOf(events.polarity[i]),
+             1.0f);
+  }
+  return map;
+}
+
+void CountEvents(benchmark::State& state, std::size_t events) {
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(events));
+}
+
+void Append(benchmark::State& state) {
+  EventHistory history(Scene().width, Scene().height);
+  for (auto _ : state) {
+    history.Append(SceneEvents());
+    history.DropBefore(SceneEvents().t.back() + 1);
+  }
+  CountEvents(state, SceneEvents().size());
+}
+BENCHMARK(Append);
+
+void Gather(benchmark::State& state) {
+  const EventHistory history = MakeHistory();
+  LocalEvents events;
+  for (auto _ : state) {
+    history.Gather({kStamp, Centre().x(), Centre().y(), kFlow.x(), kFlow.y(), kPatchRadius, kHalfWindow}, &events);
+    benchmark::DoNotOptimize(events.x.data());
+  }
+  CountEvents(state, events.size());
+}
+BENCHMARK(Gather);
+
+/// Arguments: radius of the map in cells, sigma in tenths of a cell.
+void BuildField(benchmark::State& state) {
+  const auto radius = static_cast<int>(state.range(0));
+  const DensityMap map = MakeTemplate(GatherPatch(radius), radius);
+  AssociationField field;
+  for (auto _ : state) {
+    field.Build(map, 0.1 * static_cast<double>(state.range(1)), 0.2);
+    benchmark::DoNotOptimize(field.At(0.0f, 0.0f, 0));
+  }
+}
+BENCHMARK(BuildField)->ArgNames({"radius", "sigma_tenths"})->Args({12, 10})->Args({12, 25})->Args({17, 10});
+
+void Align(benchmark::State& state) {
+  const LocalEvents events = GatherPatch(kPatchRadius);
+  const DensityMap map = MakeTemplate(events, 12);
+  AssociationField field;
+  field.Build(map, 1.0, 0.2);
+  AlignmentOptions options;
+  options.half_window_s = ToSeconds(kHalfWindow);
+  options.own_moments = field.OwnMoments(map, Eigen::Matrix2d::Identity(), kPatchRadius);
+  for (auto _ : state) {
+    PatchMotion motion{{0.8, -0.5}, kFlow + Eigen::Vector2d(10.0, 5.0), Eigen::Matrix2d::Identity()};
+    AlignToTemplate(events, field, 2, options, true, &motion);
+    benchmark::DoNotOptimize(motion);
+  }
+  CountEvents(state, events.size());
+}
+BENCHMARK(Align);
+
+/// Argument: size of the cells in px.
+void RefineFlow(benchmark::State& state) {
+  const LocalEvents events = GatherPatch(15.0);
+  FlowEstimator estimator(17, 2, static_cast<double>(state.range(0)));
+  for (auto _ : state) {
+    Eigen::Vector2d flow = 0.7 * kFlow;
+    estimator.Refine(events, {1.5, 0.2, 20, ToSeconds(kHalfWindow)}, &flow);
+    benchmark::DoNotOptimize(flow);
+  }
+  CountEvents(state, events.size());
+}
+BENCHMARK(RefineFlow)->ArgName("cell_px")->Arg(1)->Arg(2);
+
+void EstimateFlowFromNothing(benchmark::State& state) {
+  const EventHistory history = MakeHistory();
+  const TrackerOptions options;
+  for (auto _ : state) {
+    Eigen::Vector2d flow = Eigen::Vector2d::Zero();
+    EstimateFlow(history, kStamp, Centre().x(), Centre().y(), options, &flow);
+    benchmark::DoNotOptimize(flow);
+  }
+}
+BENCHMARK(EstimateFlowFromNothing);
+
+void EventImage(benchmark::State& state) {
+  const EventHistory history = MakeHistory();
+  const TrackerOptions options;
+  FlowField field(Scene().width, Scene().height, options);
+  ThreadPool pool(1);
+  field.Update(history, kStamp, {}, &pool);
+  for (auto _ : state) {
+    const cv::Mat image = CorrectedEventImage(history, kStamp, field, options.corner_window_motion_px, options);
+    benchmark::DoNotOptimize(image.data);
+  }
+  CountEvents(state, SceneEvents().size());
+}
+BENCHMARK(EventImage);
+
+void DetectCornersInImage(benchmark::State& state) {
+  const EventHistory history = MakeHistory();
+  const TrackerOptions options;
+  FlowField field(Scene().width, Scene().height, options);
+  ThreadPool pool(1);
+  field.Update(history, kStamp, {}, &pool);
+  const cv::Mat image = CorrectedEventImage(history, kStamp, field, options.corner_window_motion_px, options);
+  for (auto _ : state) benchmark::DoNotOptimize(DetectCorners(image, {}, 50, options));
+}
+BENCHMARK(DetectCornersInImage);
+
+}  // namespace
+}  // namespace evo
