@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <cmath>
+#include <vector>
 
 namespace evo {
 
@@ -22,11 +23,31 @@ struct Moments {
   double squares = 0.0;
 };
 
+/// Where the events lie in the template. In a loop of its own, which the compiler vectorises.
+struct TemplatePoints {
+  std::vector<float> u, v;  // px
+
+  void Update(const LocalEvents& events, const PatchMotion& motion) {
+    const Eigen::Matrix2f inverse = motion.linear.inverse().cast<float>();
+    const Eigen::Vector2f offset = motion.offset.cast<float>();
+    const Eigen::Vector2f flow = motion.flow.cast<float>();
+    u.resize(events.size());
+    v.resize(events.size());
+    float* const out_u = u.data();
+    float* const out_v = v.data();
+    for (std::size_t i = 0; i < events.size(); ++i) {
+      const float x = events.x[i] - offset.x() - flow.x() * events.dt[i];
+      const float y = events.y[i] - offset.y() - flow.y() * events.dt[i];
+      out_u[i] = inverse(0, 0) * x + inverse(0, 1) * y;
+      out_v[i] = inverse(1, 0) * x + inverse(1, 1) * y;
+    }
+  }
+};
+
 Moments Expect(const LocalEvents& events, const AssociationField& field, int planes, const AlignmentOptions& options,
                const PatchMotion& motion) {
-  const Eigen::Matrix2f inverse = motion.linear.inverse().cast<float>();
-  const Eigen::Vector2f offset = motion.offset.cast<float>();
-  const Eigen::Vector2f flow = motion.flow.cast<float>();
+  thread_local TemplatePoints points;
+  points.Update(events, motion);
   const auto per_window = static_cast<float>(1.0 / options.half_window_s);
   const auto per_radius = static_cast<float>(1.0 / options.patch_radius_px);
   using Row = Eigen::Array4f;
@@ -36,10 +57,8 @@ Moments Expect(const LocalEvents& events, const AssociationField& field, int pla
   Row n0 = Row::Zero(), n1 = Row::Zero(), n2 = Row::Zero(), n3 = Row::Zero(), x = Row::Zero(), y = Row::Zero();
   float squares = 0.0f;
   for (std::size_t i = 0; i < events.size(); ++i) {
-    const float rx = events.x[i] - offset.x() - flow.x() * events.dt[i];
-    const float ry = events.y[i] - offset.y() - flow.y() * events.dt[i];
-    const float u = inverse(0, 0) * rx + inverse(0, 1) * ry;
-    const float v = inverse(1, 0) * rx + inverse(1, 1) * ry;
+    const float u = points.u[i];
+    const float v = points.v[i];
     const AssociationField::Pull pull = field.At(u, v, planes == 2 && events.polarity[i] < 0 ? 1 : 0);
     if (!(pull[0] > 0.0f)) continue;
     const Row regressors = one + events.dt[i] * in_window + u * in_width + v * in_height;
