@@ -7,7 +7,6 @@
 #include <string>
 
 #include "evo/core/error.hpp"
-#include "evo/simulation/random.hpp"
 #include "simulation/lights.hpp"
 #include "simulation/ray_block.hpp"
 #include "simulation/surface_view.hpp"
@@ -19,6 +18,15 @@ using Eigen::Vector2d;
 namespace {
 
 constexpr int kMostSamples = 16;  // a pixel's rays must fit into one block
+
+/// Where the rays of a pixel lie across the columns (or rows) of their grid, in [0, 1), by its places `along` and
+/// `across` an edge between columns (or rows): van der Corput's sequence along it, which no slope of the edge follows.
+double RaysShift(int along, int across) {
+  constexpr double kGolden = 0.6180339887498949;
+  double shift = kGolden * across;
+  for (double digit = 0.5; along > 0; along /= 2, digit /= 2.0) shift += digit * (along % 2);
+  return shift - std::floor(shift);
+}
 
 /// Cuts a tile into parts of which each fits into a block of rays.
 template <typename Use>
@@ -113,9 +121,8 @@ Renderer::Rays Renderer::CastRays(int samples) {
   Vector2d ray = Vector2d::Zero();  // where there is none the last one stands in
   for (int p = 0; p < camera_.width() * camera_.height(); ++p) {
     const Vector2d centre(p % camera_.width(), p / camera_.width());
-    Random random(0, static_cast<std::uint64_t>(p));
-    const double shift_x = samples == 1 ? 0.5 : random.Uniform();
-    const double shift_y = samples == 1 ? 0.5 : random.Uniform();
+    const double shift_x = samples == 1 ? 0.5 : RaysShift(p / camera_.width(), p % camera_.width());
+    const double shift_y = samples == 1 ? 0.5 : RaysShift(p % camera_.width(), p / camera_.width());
     for (int j = 0; j < samples; ++j) {
       for (int i = 0; i < samples; ++i) {
         const Vector2d place((i + (j + shift_x) / samples) / samples,

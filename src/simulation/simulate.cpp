@@ -14,8 +14,8 @@ namespace evo {
 namespace {
 
 constexpr TimeNs kMicrosecond = 1000;
-constexpr TimeNs kSlab = 10'000'000;        // tiles look up their surfaces and speed once a slab
-constexpr int kMostRenders = 1000;  // of a tile in a slab: 10 us, well below any sensor's bandwidth
+constexpr TimeNs kSlab = 10'000'000;      // tiles look up their surfaces and speed once a slab
+constexpr int kMostRenders = 1000;        // of a tile in a slab: 10 us, well below any sensor's bandwidth
 constexpr double kStepsPerFlicker = 8.0;  // of the sensor in a period of the lamps
 
 /// Times k / rate in whole microseconds, from 0.
@@ -92,7 +92,8 @@ class Simulation {
       const auto visible = renderer_.FindVisible(tile, begin, end, T_world_begin, T_world_end);
       const double speed = renderer_.ImageSpeed(tile, visible, begin, end, T_world_begin, T_world_end);
       const double duration_s = ToSeconds(end - begin);
-      const double needed = std::max(speed * duration_s / options_.largest_step_px, duration_s / options_.longest_step_s);
+      const double needed =
+          std::max(speed * duration_s / options_.largest_step_px, duration_s / options_.longest_step_s);
       const auto renders = static_cast<TimeNs>(std::ceil(std::min<double>(needed, kMostRenders)));
       Renderer::Radiance radiance;
       TimeNs before = begin;

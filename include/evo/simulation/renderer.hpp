@@ -29,15 +29,15 @@ struct RayBlock;
 /// many threads at once. The result for a pixel does not depend on how the sensor is cut, but for rounding.
 ///
 /// Light: radiance = reflectance * (ambient * shade + lamps) + emission, holes looked through. A lamp gives
-/// intensity * cos(incidence) / distance^2 * Flicker(lighting, t), faded out smoothly where that would be below 5e-4. The
-/// head lamps sit at the camera and give head_lamps * beam * cos(incidence) / distance^2 with
-/// beam = 1 / (1 + (x / 0.35)^2 + (y / 0.15)^2)^2 on the plane z = 1. Only the side that faces a light is lit by it.
+/// intensity * cos(incidence) / distance^2 * Flicker(lighting, t), faded out smoothly where that would be below 5e-4.
+/// The head lamps sit at the camera and give head_lamps * beam * cos(incidence) / distance^2 with beam = 1 / (1 + (x /
+/// 0.35)^2 + (y / 0.15)^2)^2 on the plane z = 1. Only the side that faces a light is lit by it.
 class Renderer {
  public:
   /// Each pixel is the mean of samples x samples rays spread over its square around its centre, in a rotated grid: no
-  /// two share a row or a column, so that an edge that crosses a pixel changes it in samples^2 steps. The grid lies a
-  /// little differently in each pixel (by up to half such a step, at random, the same in every run): so an edge that runs
-  /// along the pixels is at its place on average over them, not at the nearest step.
+  /// two share a row or a column, so that an edge that crosses a pixel changes it in samples^2 steps. From
+  /// pixel to pixel the grid is shifted by less than such a step, so that an edge that runs along the pixels is at its
+  /// place on average over them, not at the nearest step.
   /// Throws Error(kInput) where `samples` is not in [1, 16] or a surface names a texture or body that is not there.
   Renderer(const Scene& scene, const Camera& camera, int samples);
 
