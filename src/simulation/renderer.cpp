@@ -19,11 +19,14 @@ namespace {
 
 constexpr int kMostSamples = 16;  // a pixel's rays must fit into one block
 
-// 1 / p and 1 / p^2 of the plastic number p: their multiples fill a square, and each row and column of pixels, evenly.
-constexpr double kPlastic = 0.7548776662466927;
-constexpr double kPlastic2 = 0.5698402909980532;
-
-double Fraction(double x) { return x - std::floor(x); }
+/// Where the rays of a pixel lie across the columns (or rows) of their grid, in [0, 1), by its places `along` and
+/// `across` an edge between columns (or rows): van der Corput's sequence along it, which no slope of the edge follows.
+double RaysShift(int along, int across) {
+  constexpr double kGolden = 0.6180339887498949;
+  double shift = kGolden * across;
+  for (double digit = 0.5; along > 0; along /= 2, digit /= 2.0) shift += digit * (along % 2);
+  return shift - std::floor(shift);
+}
 
 /// Cuts a tile into parts of which each fits into a block of rays.
 template <typename Use>
@@ -118,8 +121,8 @@ Renderer::Rays Renderer::CastRays(int samples) {
   Vector2d ray = Vector2d::Zero();  // where there is none the last one stands in
   for (int p = 0; p < camera_.width() * camera_.height(); ++p) {
     const Vector2d centre(p % camera_.width(), p / camera_.width());
-    const double shift_x = samples == 1 ? 0.5 : Fraction(kPlastic2 * centre.x() + kPlastic * centre.y());
-    const double shift_y = samples == 1 ? 0.5 : Fraction(kPlastic * centre.x() + kPlastic2 * centre.y());
+    const double shift_x = samples == 1 ? 0.5 : RaysShift(p / camera_.width(), p % camera_.width());
+    const double shift_y = samples == 1 ? 0.5 : RaysShift(p % camera_.width(), p / camera_.width());
     for (int j = 0; j < samples; ++j) {
       for (int i = 0; i < samples; ++i) {
         const Vector2d place((i + (j + shift_x) / samples) / samples,

@@ -197,10 +197,9 @@ TEST_F(SimulateTest, FewRendersUnderLampsShowWhatManyDo) {
     const auto at = std::ranges::lower_bound(there, few.events.t[i] - 800'000);
     if (at != there.end() && *at < few.events.t[i] + 800'000) ++alike;
   }
-  printf("ALIKE %zu of %zu, %zu\n", alike, few.events.size(), many.events.size());
   EXPECT_NEAR(static_cast<double>(few.events.size()), static_cast<double>(many.events.size()),
-              0.02 * static_cast<double>(many.events.size()));
-  EXPECT_GT(static_cast<double>(alike), 0.95 * static_cast<double>(few.events.size()));
+              0.005 * static_cast<double>(many.events.size()));
+  EXPECT_GT(static_cast<double>(alike), 0.98 * static_cast<double>(few.events.size()));
 }
 
 TEST_F(SimulateTest, DepthAndPosesAgree) {

@@ -35,10 +35,10 @@ struct RayBlock;
 class Renderer {
  public:
   /// Each pixel is the mean of samples x samples rays spread over its square around its centre, in a rotated grid: no
-  /// two share a row or a column, so that an edge that crosses a pixel changes it in samples^2 steps. The grid lies a
-  /// little differently in each pixel (by up to half such a step, evenly spread over neighbours): so an edge that
-  /// runs along the pixels is at its place on average over them, not at the nearest step. Throws Error(kInput) where
-  /// `samples` is not in [1, 16] or a surface names a texture or body that is not there.
+  /// two share a row or a column, so that an edge that crosses a pixel changes it in samples^2 steps. From
+  /// pixel to pixel the grid is shifted by less than such a step, so that an edge that runs along the pixels is at its
+  /// place on average over them, not at the nearest step.
+  /// Throws Error(kInput) where `samples` is not in [1, 16] or a surface names a texture or body that is not there.
   Renderer(const Scene& scene, const Camera& camera, int samples);
 
   /// Indices of the surfaces that any pixel of `tile` may see while the camera goes from one pose to the other during
