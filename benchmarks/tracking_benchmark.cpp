@@ -115,10 +115,10 @@ BENCHMARK(Align);
 /// Argument: size of the cells in px.
 void RefineFlow(benchmark::State& state) {
   const LocalEvents events = GatherPatch(15.0);
-  FlowEstimator estimator(17, 2, static_cast<double>(state.range(0)));
+  FlowEstimator estimator(17, 2, {static_cast<double>(state.range(0)), 1.5, 0.2});
   for (auto _ : state) {
     Eigen::Vector2d flow = 0.7 * kFlow;
-    estimator.Refine(events, {1.5, 0.2, 20, ToSeconds(kHalfWindow)}, &flow);
+    estimator.Refine(events, ToSeconds(kHalfWindow), &flow);
     benchmark::DoNotOptimize(flow);
   }
   CountEvents(state, events.size());

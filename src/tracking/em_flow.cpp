@@ -7,25 +7,23 @@ namespace evo {
 
 namespace {
 
-constexpr double kSmallestShift = 0.02;  // px at the end of the window: below this the flow has settled
 // Events also move the density that pulls them, so a plain M step closes only part of the gap.
 constexpr double kOverRelaxation = 1.6;
-
-constexpr double kSmallestVariance = 0.25;
+constexpr double kSmallestVariance = 0.25;  // px^2, of the association
 
 }  // namespace
 
-FlowEstimator::FlowEstimator(int radius_px, int planes, double cell_px)
-    : cell_px_(cell_px), map_(static_cast<int>(std::ceil(radius_px / cell_px)), planes) {}
+FlowEstimator::FlowEstimator(int radius_px, int planes, const FlowOptions& options)
+    : options_(options), map_(static_cast<int>(std::ceil(radius_px / options.cell_px)), planes) {}
 
-double FlowEstimator::Refine(const LocalEvents& events, const FlowOptions& options, Eigen::Vector2d* flow) {
-  const auto per_cell = static_cast<float>(1.0 / cell_px_);
+double FlowEstimator::Refine(const LocalEvents& events, double half_window_s, Eigen::Vector2d* flow) {
+  const auto per_cell = static_cast<float>(1.0 / options_.cell_px);
   // Bilinear votes blur by a variance of cell^2 / 6: what larger cells add is taken from the association's own.
-  const double added = (cell_px_ * cell_px_ - 1.0) / 6.0;
-  const double variance = std::max(options.sigma_px * options.sigma_px - added, kSmallestVariance);
-  const double sigma = std::sqrt(variance) / cell_px_;
+  const double added = (options_.cell_px * options_.cell_px - 1.0) / 6.0;
+  const double variance = std::max(options_.sigma_px * options_.sigma_px - added, kSmallestVariance);
+  const double sigma = std::sqrt(variance) / options_.cell_px;
   double share = 0.0;
-  for (int iteration = 0; iteration < options.iterations; ++iteration) {
+  for (int iteration = 0; iteration < options_.iterations; ++iteration) {
     const Eigen::Array2f v = flow->cast<float>();
     map_.Clear();
     for (std::size_t i = 0; i < events.size(); ++i) {
@@ -33,7 +31,7 @@ double FlowEstimator::Refine(const LocalEvents& events, const FlowOptions& optio
       map_.Vote(per_cell * (events.x[i] - v.x() * t), per_cell * (events.y[i] - v.y() * t),
                 map_.PlaneOf(events.polarity[i]), 1.0f);
     }
-    field_.Build(map_, sigma, options.outlier_share);
+    field_.Build(map_, sigma, options_.outlier_share);
 
     // Regression of the pull on time with an offset: the events of a window need not be centred in time.
     Eigen::Array4f sums = Eigen::Array4f::Zero();    // of (weight, pull)
@@ -54,9 +52,9 @@ double FlowEstimator::Refine(const LocalEvents& events, const FlowOptions& optio
     share = static_cast<double>(sums[0]) / static_cast<double>(events.size());
     // An event late by dt sits at u = x - v dt; pulling it by d means v should fall by d / dt.
     const Eigen::Array4f slope = (sums_t - mean_t * sums) / spread;
-    const Eigen::Vector2d step = -cell_px_ * Eigen::Vector2d(slope[1], slope[2]);
+    const Eigen::Vector2d step = -options_.cell_px * Eigen::Vector2d(slope[1], slope[2]);
     *flow += kOverRelaxation * step;
-    if (step.norm() * options.half_window_s < kSmallestShift) break;
+    if (step.norm() * half_window_s < options_.settled_px) break;
   }
   return share;
 }

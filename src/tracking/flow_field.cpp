@@ -11,8 +11,11 @@ namespace {
 
 constexpr int kCellPx = 24;
 constexpr double kNeighbourhoodPx = 40.0;  // features this near tell a cell its flow
-constexpr double kCoarseCellPx = 2.0;      // of a density that only has to lead near the flow: a quarter of the cost
-constexpr double kCautiousShare = 0.5;     // of a window's motion, while the flow comes from elsewhere
+// Of the windows that only have to lead near the flow: a quarter of the cost.
+constexpr double kCoarseCellPx = 2.0;
+constexpr double kCoarselySettledPx = 0.1;
+constexpr double kSettledPx = 0.02;
+constexpr double kCautiousShare = 0.5;  // of a window's motion, while the flow comes from elsewhere
 
 }  // namespace
 
@@ -26,17 +29,19 @@ bool EstimateFlow(const EventHistory& history, TimeNs t, double x, double y, con
   thread_local LocalEvents events;
   const int radius = options.flow_patch_radius_px + 2;
   const int planes = options.use_polarity ? 2 : 1;
-  FlowEstimator coarse(radius, planes, kCoarseCellPx);
-  FlowEstimator fine(radius, planes, 1.0);
+  FlowEstimator coarse(
+      radius, planes,
+      {kCoarseCellPx, options.flow_sigma_px, options.outlier_share, options.iterations, kCoarselySettledPx});
+  FlowEstimator fine(radius, planes,
+                     {1.0, options.fine_sigma_px, options.outlier_share, options.iterations, kSettledPx});
   const auto gather = [&](TimeNs half_window) {
     history.Gather({t, x, y, flow->x(), flow->y(), static_cast<double>(options.flow_patch_radius_px), half_window},
                    &events);
     events.Thin(static_cast<std::size_t>(options.most_events));
     return events.size() >= static_cast<std::size_t>(options.fewest_events);
   };
-  const auto refine = [&](FlowEstimator& estimator, double sigma_px, TimeNs half_window) {
-    const FlowOptions flow_options{sigma_px, options.outlier_share, options.iterations, ToSeconds(half_window)};
-    return estimator.Refine(events, flow_options, flow) > 0.0;
+  const auto refine = [&](FlowEstimator& estimator, TimeNs half_window) {
+    return estimator.Refine(events, ToSeconds(half_window), flow) > 0.0;
   };
 
   // A short window hardly moves the events even if the flow is unknown, but tells little of a slow flow; each window
@@ -48,11 +53,11 @@ bool EstimateFlow(const EventHistory& history, TimeNs t, double x, double y, con
     half_window = std::min(half_window, longest);
     settled = half_window == longest;
     if (!gather(half_window)) continue;
-    if (!refine(coarse, options.flow_sigma_px, half_window)) return false;
+    if (!refine(coarse, half_window)) return false;
     settled = settled || flow->norm() * 2.0 * ToSeconds(half_window) >= options.window_motion_px;
   }
   half_window = HalfWindow(*flow, options.window_motion_px, options);
-  return gather(half_window) && refine(fine, options.fine_sigma_px, half_window);
+  return gather(half_window) && refine(fine, half_window);
 }
 
 FlowField::FlowField(int width, int height, const TrackerOptions& options)

@@ -18,9 +18,10 @@ void Register(Parameters& parameters, TrackerOptions& o) {
   parameters.Add("tracker.longest_window_s", &o.longest_window_s, 0.001, 2.0, "of a feature's events (s)");
   parameters.Add("tracker.fewest_events", &o.fewest_events, 10, 10000, "in a patch's window");
   parameters.Add("tracker.most_events", &o.most_events, 50, 1000000, "in a patch's window: of more, an even sample");
-  parameters.Add("tracker.flow_sigma_px", &o.flow_sigma_px, 0.3, 10.0, "soft association of the flow EM (px)");
+  parameters.Add("tracker.flow_sigma_px", &o.flow_sigma_px, 0.3, 10.0, "soft association, first flow (px)");
   parameters.Add("tracker.coarse_sigma_px", &o.coarse_sigma_px, 0.3, 10.0, "soft association, first alignment (px)");
-  parameters.Add("tracker.fine_sigma_px", &o.fine_sigma_px, 0.3, 10.0, "soft association, last alignment (px)");
+  parameters.Add("tracker.fine_sigma_px", &o.fine_sigma_px, 0.3, 10.0,
+                 "soft association, last flow and last alignment (px)");
   parameters.Add("tracker.outlier_share", &o.outlier_share, 0.0, 10.0, "density of stray events over the mean density");
   parameters.Add("tracker.iterations", &o.iterations, 1, 200, "of each expectation maximisation, at most");
   parameters.Add("tracker.flow_prior", &o.flow_prior, 0.0, 1e6, "weight of the predicted flow (events)");

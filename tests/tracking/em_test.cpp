@@ -46,9 +46,9 @@ TEST(FlowEstimator, RefinesAFlowThatMovesThePatchAFewPixels) {
   for (const Vector2d& truth : {Vector2d(150, 40), Vector2d(-80, -160), Vector2d(0, 30)}) {
     const double half_window = 2.0 / truth.norm();
     const LocalEvents events = PatchEvents({Vector2d::Zero(), truth, Matrix2d::Identity()}, half_window, 400, 5);
-    FlowEstimator estimator(17, 2, 1.0);
+    FlowEstimator estimator(17, 2, {1.0, 1.5, 0.2, 50});
     Vector2d flow = 0.6 * truth;
-    const double share = estimator.Refine(events, {1.5, 0.2, 50, half_window}, &flow);
+    const double share = estimator.Refine(events, half_window, &flow);
     EXPECT_GT(share, 0.7);
     EXPECT_LT((flow - truth).norm(), 0.08 * truth.norm()) << truth.transpose();
   }
@@ -60,9 +60,9 @@ TEST(FlowEstimator, CoarseCellsComeNear) {
     const double half_window = 2.0 / truth.norm();
     const LocalEvents events =
         PatchEvents({Vector2d::Zero(), truth, Matrix2d::Identity()}, half_window, 400, static_cast<unsigned>(seed));
-    FlowEstimator estimator(17, 2, 2.0);
+    FlowEstimator estimator(17, 2, {2.0, 1.5, 0.2, 50});
     Vector2d flow = 0.5 * truth;
-    estimator.Refine(events, {1.5, 0.2, 50, half_window}, &flow);
+    estimator.Refine(events, half_window, &flow);
     EXPECT_LT((flow - truth).norm(), 0.2 * truth.norm()) << seed;
   }
 }

@@ -8,10 +8,11 @@
 namespace evo {
 
 struct FlowOptions {
+  double cell_px = 1.0;  ///< of the density: larger cells are cheaper and coarser
   double sigma_px = 1.5;
   double outlier_share = 0.5;
   int iterations = 20;
-  double half_window_s = 0.01;
+  double settled_px = 0.02;  ///< a step that moves the events at the window's ends by less than this is the last
 };
 
 /// Expectation maximisation of the optical flow of a patch (Zhu et al., EM 1): events propagated by the right flow to
@@ -19,14 +20,13 @@ struct FlowOptions {
 /// events; M step: flow += sum w dx dt / sum w dt^2, in closed form.
 class FlowEstimator {
  public:
-  /// Of patches up to `radius_px`; cells larger than 1 px make it cheaper and coarser.
-  FlowEstimator(int radius_px, int planes, double cell_px);
+  FlowEstimator(int radius_px, int planes, const FlowOptions& options);
 
-  /// Refines `flow` (px/s); returns the share of events that belong to an edge under the final flow.
-  double Refine(const LocalEvents& events, const FlowOptions& options, Eigen::Vector2d* flow);
+  /// Refines `flow` (px/s) on the events of a window; returns the share of them that belong to an edge under it.
+  double Refine(const LocalEvents& events, double half_window_s, Eigen::Vector2d* flow);
 
  private:
-  double cell_px_;
+  FlowOptions options_;
   DensityMap map_;
   AssociationField field_;
 };

@@ -33,9 +33,9 @@ struct TrackerOptions {
   int most_events = 400;   ///< in a patch's window: of more, an even sample is taken
 
   // Expectation maximisation.
-  double flow_sigma_px = 1.5;    ///< soft association of events among themselves (EM 1)
+  double flow_sigma_px = 1.5;    ///< soft association of events among themselves (EM 1), but for the last window
   double coarse_sigma_px = 2.5;  ///< soft association to the template (EM 2), first pass
-  double fine_sigma_px = 1.0;    ///< soft association to the template (EM 2), final pass
+  double fine_sigma_px = 1.0;    ///< the same, final pass; also of the last window of EM 1
   double outlier_share = 0.2;    ///< density of stray events over the patch's mean density of events
   int iterations = 20;           ///< at most, each EM
   double flow_prior = 20.0;      ///< weight, in events, of the predicted flow
