@@ -76,13 +76,16 @@ TEST_F(BenchScenesTest, ARunThatFailsHasARow) {
   EXPECT_FALSE(Simulated() || Ran()) << err;
 }
 
-TEST_F(BenchScenesTest, OtherFoldersAreLeftAlone) {
+TEST_F(BenchScenesTest, OtherFoldersAreLeftAloneButNotOnesThatWereInterrupted) {
   WriteScene("0.01");
   fs::create_directories(folder / "out/scenes/swift_1_0.5");
   Write("out/scenes/swift_1_0.5/events.txt", "mine");
   EXPECT_EQ(Bench("swift.yaml"), 2);
   EXPECT_NE(err.find("was not made by this script"), std::string::npos) << err;
   EXPECT_EQ(ReadFile(folder / "out/scenes/swift_1_0.5/events.txt"), "mine");
+  Write("out/scenes/swift_1_0.5/made_from.txt", "");
+  EXPECT_EQ(Bench("swift.yaml --simulate-only"), 0) << err;
+  EXPECT_TRUE(Simulated());
   EXPECT_EQ(Bench("nowhere"), 2);
   EXPECT_EQ(Bench("--speed 3"), 2);
 }
