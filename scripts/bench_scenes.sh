@@ -116,6 +116,8 @@ simulate() {
     fail "$folder: was not made by this script and is left alone; choose another folder with --sequences"
   fi
   rm -rf "$folder"
+  mkdir -p "$folder"
+  : >"$folder/made_from.txt" # filled at the end; tells already now that the folder is ours
   echo "simulate   $folder" >&2
   "$EVO_RUN" simulate "$scene" --seed "$seed" "${simulate_settings[@]}" "${from[@]}" --duration "$seconds" \
     --format "$format" --out "$folder" --quiet >&2
