@@ -102,7 +102,7 @@ TEST_F(PipelineTest, RunKeepsItsQuality) {
   }
   EXPECT_EQ(CountFiles(folder / "result" / "images"), 2 * 5);  // at 0 and 1 s, four frames and their sheet each
   const auto manifest = nlohmann::json::parse(ReadFile(folder / "result" / "manifest.json"));
-  EXPECT_EQ(manifest["counts"]["events"], 673887);
+  EXPECT_EQ(manifest["counts"]["events"], 673521);
   EXPECT_EQ(manifest["inputs"].size(), 3u);
   EXPECT_TRUE(manifest["rebootstraps"].empty());
   EXPECT_NE(out.find("sim3"), std::string::npos) << out;
