@@ -48,6 +48,7 @@ class Dataset {
   hsize_t chunk_rows() const { return chunk_rows_; }
   bool is_integer() const { return is_integer_; }
   std::size_t element_bytes() const { return element_bytes_; }
+  hid_t id() const { return id_.get(); }
 
   /// Rows [first, first + rows) with all that lies in them, row-major.
   void Read(hsize_t first, hsize_t rows, double* values) const;

@@ -32,6 +32,18 @@ std::string NoTime(double stamp) { return "the stamp " + FormatNumber(stamp) + "
 
 bool IsPolarity(double p) { return (p == 1.0) | (p == 0.0) | (p == -1.0); }
 
+/// False if one is not a whole number in [0, size).
+bool ConvertCoordinates(const double* values, std::size_t count, int size, std::uint16_t* coordinates) {
+  const double last = size - 1;
+  int bad = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto pixel = static_cast<int>(std::min(std::max(0.0, values[i]), last));  // 0 for NaN
+    bad |= static_cast<double>(pixel) != values[i] ? 1 : 0;
+    coordinates[i] = static_cast<std::uint16_t>(pixel);
+  }
+  return bad == 0;
+}
+
 }  // namespace
 
 MvsecEvents::MvsecEvents(const hdf5::File& file) : events_(file.Open(kMvsecEvents)) {
@@ -41,39 +53,39 @@ MvsecEvents::MvsecEvents(const hdf5::File& file) : events_(file.Open(kMvsecEvent
 }
 
 void MvsecEvents::CheckShape() const {
-  const auto& shape = events_.shape();
+  const auto& shape = table().shape();
   if (shape.size() != 2 || shape[1] != 4) {
     std::string text;
     for (const hsize_t size : shape) text += (text.empty() ? "" : " x ") + std::to_string(size);
-    throw events_.Failure(" has the shape " + text + "; expected N x 4 with the columns x y t p");
+    throw table().Failure(" has the shape " + text + "; expected N x 4 with the columns x y t p");
   }
-  if (shape[0] == 0) throw events_.Failure(" holds no events");
+  if (shape[0] == 0) throw table().Failure(" holds no events");
 }
 
 MvsecEvents::StampUnit MvsecEvents::FindUnit() const {
-  if (!events_.is_integer()) return {};
-  const double first = events_.ReadElement(0, 2);
+  if (!table().is_integer()) return {};
+  const double first = table().ReadElement(0, 2);
   for (const TimeNs ns_per_tick : {TimeNs{1}, TimeNs{1000}}) {
     const double seconds = first * static_cast<double>(ns_per_tick) * 1e-9;
     if (seconds >= kFirstEpochS && seconds <= kLastEpochS) return {false, ns_per_tick};
   }
-  throw events_.Failure(" holds integers, and the unit of its stamps (first: " + FormatNumber(first) +
+  throw table().Failure(" holds integers, and the unit of its stamps (first: " + FormatNumber(first) +
                         ") cannot be told; store the stamps as float64 seconds");
 }
 
 /// A float32 holds an epoch stamp to two minutes: such a file has lost its times.
 void MvsecEvents::CheckResolution() const {
-  if (events_.is_integer() || events_.element_bytes() >= sizeof(double)) return;
-  const auto last = static_cast<float>(std::abs(events_.ReadElement(rows() - 1, 2)));
+  if (table().is_integer() || table().element_bytes() >= sizeof(double)) return;
+  const auto last = static_cast<float>(std::abs(table().ReadElement(rows() - 1, 2)));
   const double step = std::nextafter(last, HUGE_VALF) - last;
   if (std::isfinite(last) && step > kCoarsestStampS) {
-    throw events_.Failure(" holds float32 numbers, which keep its stamps only to " + FormatNumber(step) +
+    throw table().Failure(" holds float32 numbers, which keep its stamps only to " + FormatNumber(step) +
                           " s; store them as float64");
   }
 }
 
 hsize_t MvsecEvents::block_rows() const {
-  const hsize_t chunk = std::max<hsize_t>(events_.chunk_rows(), 1);
+  const hsize_t chunk = std::max<hsize_t>(table().chunk_rows(), 1);
   return chunk > kLargestBlockRows ? kLargestBlockRows : (kBlockRows + chunk - 1) / chunk * chunk;
 }
 
@@ -86,8 +98,8 @@ TimeNs MvsecEvents::ToNs(double stamp) const {
 }
 
 TimeNs MvsecEvents::StampAt(hsize_t row) const {
-  const double stamp = events_.ReadElement(row, 2);
-  if (!InRange(stamp)) throw events_.Failure(Row(row) + NoTime(stamp));
+  const double stamp = table().ReadElement(row, 2);
+  if (!InRange(stamp)) throw table().Failure(Row(row) + NoTime(stamp));
   return ToNs(stamp);
 }
 
@@ -106,26 +118,26 @@ hsize_t MvsecEvents::FirstAtOrAfter(TimeNs target) const {
 }
 
 void MvsecEvents::Read(hsize_t first, std::size_t count, TimeNs previous, int width, int height, EventColumns* block) {
-  values_.resize(std::max(values_.size(), 4 * count));
-  events_.Read(first, count, values_.data());
+  events_.Read(first, count, &values_);
   block->resize(count);
-  // The two passes have no branches: which event is at fault is looked up only when there is one.
+  // The passes have no branches: which event is at fault is looked up only when there is one.
   if (ConvertStamps(count, previous, block) && ConvertPixels(count, width, height, block)) return;
   for (std::size_t i = 0; i < count; ++i) {
-    const double* const event = &values_[4 * i];
+    const std::array<double, 4> event{values_[i], values_[count + i], values_[2 * count + i], values_[3 * count + i]};
     const std::string fault = Fault(event, previous, width, height);
-    if (!fault.empty()) throw events_.Failure(Row(first + i) + fault);
+    if (!fault.empty()) throw table().Failure(Row(first + i) + fault);
     previous = ToNs(event[2]);
   }
 }
 
 bool MvsecEvents::ConvertStamps(std::size_t count, TimeNs previous, EventColumns* block) const {
+  const double* const values = values_.data() + 2 * count;
   bool valid = true;
-  for (std::size_t i = 0; i < count; ++i) valid &= InRange(values_[4 * i + 2]);
+  for (std::size_t i = 0; i < count; ++i) valid &= InRange(values[i]);
   if (!valid) return false;
   TimeNs* const stamps = block->t.data();
   for (std::size_t i = 0; i < count; ++i) {
-    const TimeNs t = ToNs(values_[4 * i + 2]);
+    const TimeNs t = ToNs(values[i]);
     valid &= t >= previous;
     stamps[i] = previous = t;
   }
@@ -133,29 +145,19 @@ bool MvsecEvents::ConvertStamps(std::size_t count, TimeNs previous, EventColumns
 }
 
 bool MvsecEvents::ConvertPixels(std::size_t count, int width, int height, EventColumns* block) const {
-  const double right = width;
-  const double bottom = height;
-  std::uint16_t* const columns = block->x.data();
-  std::uint16_t* const rows = block->y.data();
-  std::int8_t* const polarities = block->polarity.data();
-  bool valid = true;
+  const bool whole = ConvertCoordinates(values_.data(), count, width, block->x.data()) &
+                     ConvertCoordinates(values_.data() + count, count, height, block->y.data());
+  const double* const polarities = values_.data() + 3 * count;
+  int bad = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const double x = values_[4 * i];
-    const double y = values_[4 * i + 1];
-    const double p = values_[4 * i + 3];
-    const bool inside = (x >= 0.0) & (x < right) & (y >= 0.0) & (y < bottom);
-    const int column = inside ? static_cast<int>(x) : 0;
-    const int row = inside ? static_cast<int>(y) : 0;
-    valid &= inside & (column == x) & (row == y) & IsPolarity(p);
-    columns[i] = static_cast<std::uint16_t>(column);
-    rows[i] = static_cast<std::uint16_t>(row);
-    polarities[i] = p > 0.0 ? 1 : -1;
+    bad |= IsPolarity(polarities[i]) ? 0 : 1;
+    block->polarity[i] = polarities[i] > 0.0 ? 1 : -1;
   }
-  return valid;
+  return whole && bad == 0;
 }
 
 /// What is wrong with one row, in the order in which a reader would want to know; empty if nothing is.
-std::string MvsecEvents::Fault(const double* event, TimeNs previous, int width, int height) const {
+std::string MvsecEvents::Fault(const std::array<double, 4>& event, TimeNs previous, int width, int height) const {
   const double x = event[0];
   const double y = event[1];
   if (!InRange(event[2])) return NoTime(event[2]);

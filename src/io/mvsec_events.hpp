@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "evo/core/time.hpp"
 #include "evo/events/event_columns.hpp"
 #include "io/hdf5.hpp"
+#include "io/hdf5_columns.hpp"
 
 namespace evo {
 
@@ -17,7 +19,7 @@ class MvsecEvents {
  public:
   explicit MvsecEvents(const hdf5::File& file);
 
-  hsize_t rows() const { return events_.shape()[0]; }
+  hsize_t rows() const { return table().shape()[0]; }
   /// Reads are fastest in pieces of so many rows, at multiples of it.
   hsize_t block_rows() const;
   TimeNs StampAt(hsize_t row) const;
@@ -33,6 +35,7 @@ class MvsecEvents {
     TimeNs ns_per_tick = 1;  ///< if not seconds
   };
 
+  const hdf5::Dataset& table() const { return events_.table(); }
   void CheckShape() const;
   StampUnit FindUnit() const;
   void CheckResolution() const;
@@ -40,11 +43,11 @@ class MvsecEvents {
   TimeNs ToNs(double stamp) const;
   bool ConvertStamps(std::size_t count, TimeNs previous, EventColumns* block) const;
   bool ConvertPixels(std::size_t count, int width, int height, EventColumns* block) const;
-  std::string Fault(const double* event, TimeNs previous, int width, int height) const;
+  std::string Fault(const std::array<double, 4>& event, TimeNs previous, int width, int height) const;
 
-  hdf5::Dataset events_;
+  hdf5::ColumnReader events_;
   StampUnit unit_;
-  std::vector<double> values_;  ///< the rows read last
+  std::vector<double> values_;  ///< the rows read last, column by column
 };
 
 }  // namespace evo
