@@ -7,7 +7,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 packages=(
   cmake ninja-build g++
   libeigen3-dev libopencv-core-dev libopencv-imgproc-dev libopencv-video-dev libyaml-cpp-dev libcli11-dev
-  libhdf5-dev libssl-dev libpng-dev libspdlog-dev nlohmann-json3-dev
+  libhdf5-dev libdeflate-dev libssl-dev libpng-dev libspdlog-dev nlohmann-json3-dev
   libgtest-dev     # the tests
   libbenchmark-dev # the micro-benchmarks
   gnuplot-nox      # the plots, at run time

@@ -1,12 +1,12 @@
 #include "io/hdf5_columns.hpp"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
 #include <utility>
+
+#include "io/inflate.hpp"
 
 namespace evo::hdf5 {
 
@@ -22,11 +22,6 @@ void Unshuffle(const std::uint8_t* planes, std::size_t total, std::size_t first,
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t b = 0; b < kBytes; ++b) bytes[kBytes * i + b] = p[b * total + i];
   }
-}
-
-bool Inflate(const std::vector<std::uint8_t>& stored, std::vector<std::uint8_t>* inflated) {
-  uLongf bytes = inflated->size();
-  return uncompress(inflated->data(), &bytes, stored.data(), stored.size()) == Z_OK && bytes == inflated->size();
 }
 
 }  // namespace
@@ -48,8 +43,8 @@ bool ColumnReader::IsPlainChunked() {
   for (int i = 0; i < filters; ++i) {
     unsigned flags = 0;
     std::size_t parameters = 0;
-    const H5Z_filter_t filter = H5Pget_filter2(creation.get(), static_cast<unsigned>(i), &flags, &parameters, nullptr,
-                                               0, nullptr, nullptr);
+    const H5Z_filter_t filter =
+        H5Pget_filter2(creation.get(), static_cast<unsigned>(i), &flags, &parameters, nullptr, 0, nullptr, nullptr);
     const bool known = (filter == H5Z_FILTER_SHUFFLE && i == 0) || (filter == H5Z_FILTER_DEFLATE && i + 1 == filters);
     if (!known) return false;
     (filter == H5Z_FILTER_SHUFFLE ? shuffled_ : deflated_) = true;
@@ -101,7 +96,7 @@ bool ColumnReader::LoadChunk(hsize_t chunk_row, hsize_t chunk_column) {
   if (H5Dread_chunk(table_.id(), H5P_DEFAULT, offset.data(), &skipped_filters, stored_.data()) < 0) return false;
   if (skipped_filters != 0) return false;
   inflated_.resize(chunk_rows_ * chunk_columns_ * kBytes);
-  if (deflated_) return Inflate(stored_, &inflated_);
+  if (deflated_) return Inflate(stored_, inflated_);
   std::swap(stored_, inflated_);
   return inflated_.size() == chunk_rows_ * chunk_columns_ * kBytes;
 }

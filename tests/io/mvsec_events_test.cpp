@@ -61,10 +61,11 @@ TEST_F(MvsecEventsTest, WritesInPiecesWhatItWritesAtOnce) {
 TEST_F(MvsecEventsTest, ReadsEveryLayout) {
   const EventColumns events = MakeEvents(30'000, 0);
   const std::vector<double> rows = EventRows(events);
-  const std::vector<Storage> storages = {{H5T_NATIVE_DOUBLE, {}, false},        {H5T_NATIVE_DOUBLE, {1024, 4}, true},
-                                         {H5T_NATIVE_DOUBLE, {777, 1}, true},   {H5T_NATIVE_DOUBLE, {30'000, 4}, true},
-                                         {H5T_NATIVE_DOUBLE, {64, 4}, false},   {H5T_IEEE_F64BE, {5000, 2}, true},
-                                         {H5T_NATIVE_LDOUBLE, {1000, 4}, false}};
+  const std::vector<Storage> storages = {{H5T_NATIVE_DOUBLE, {}, false},         {H5T_NATIVE_DOUBLE, {1024, 4}, true},
+                                         {H5T_NATIVE_DOUBLE, {777, 1}, true},    {H5T_NATIVE_DOUBLE, {30'000, 4}, true},
+                                         {H5T_NATIVE_DOUBLE, {64, 4}, false},    {H5T_IEEE_F64BE, {5000, 2}, true},
+                                         {H5T_NATIVE_LDOUBLE, {1000, 4}, false}, {H5T_NATIVE_DOUBLE, {777, 1}, false},
+                                         {H5T_NATIVE_DOUBLE, {1000, 3}, true},   {H5T_NATIVE_DOUBLE, {5000, 2}, false}};
   for (std::size_t i = 0; i < storages.size(); ++i) {
     const auto path = folder / (std::to_string(i) + ".hdf5");
     StoreEvents(path, rows, storages[i]);
