@@ -9,7 +9,7 @@ namespace evo {
 
 namespace {
 
-constexpr int kTilePx = 8;
+constexpr int kTilePx = EventHistory::kTilePx;
 
 std::size_t ClampTile(double px, std::size_t tiles) {
   const double tile = std::floor(px / kTilePx);

@@ -1,32 +1,104 @@
 #include "evo/tracking/corner_detector.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
+#include <tuple>
+
+#include "evo/tracking/harris.hpp"
 
 namespace evo {
 
 namespace {
 
-constexpr int kHarrisBlockPx = 7;
-constexpr double kHarrisK = 0.04;
 constexpr double kStrongCorner = 0.95;  // quantile
 constexpr int kBucketPx = 32;
+
+constexpr std::size_t kStripes = 4;  // of a corrected image, each with an image of its own
+
+/// The flow within a tile: bilinear between its corners.
+struct TileFlow {
+  Eigen::Array2f origin, along_x, along_y, along_xy;  // px/s, for x and y in tiles
+  float slowest;                                      // of the tile, roughly
+
+  TileFlow(const FlowField& flow, double x, double y) {
+    constexpr double kSide = EventHistory::kTilePx;
+    const auto at = [&](double dx, double dy) -> Eigen::Array2f {
+      return flow.At(x + dx * kSide, y + dy * kSide).cast<float>();
+    };
+    origin = at(0, 0);
+    along_x = at(1, 0) - origin;
+    along_y = at(0, 1) - origin;
+    along_xy = at(1, 1) - origin - along_x - along_y;
+    const Eigen::Array2f centre = origin + 0.5f * (along_x + along_y) + 0.25f * along_xy;
+    const Eigen::Array2f change = 0.5f * (along_x.abs() + along_y.abs()) + 0.25f * along_xy.abs();
+    slowest = centre.matrix().norm() - change.matrix().norm();
+  }
+
+  Eigen::Array2f At(float x, float y) const { return origin + x * along_x + y * (along_y + x * along_xy); }
+};
+
+/// Half of the window in which a flow moves an event by twice `motion_px`, within limits.
+struct HalfWindowLimits {
+  double motion_px, shortest_s, longest_s;
+
+  double Of(double speed) const { return std::clamp(motion_px / std::max(speed, 1e-3), shortest_s, longest_s); }
+};
+
+void Vote(float x, float y, cv::Mat* image) {
+  if (!(x >= 0.0f && y >= 0.0f)) return;
+  const int c = static_cast<int>(x);
+  const int r = static_cast<int>(y);
+  if (c + 1 >= image->cols || r + 1 >= image->rows) return;
+  const float fx = x - static_cast<float>(c);
+  const float fy = y - static_cast<float>(r);
+  float* const row = image->ptr<float>(r) + c;
+  float* const below = image->ptr<float>(r + 1) + c;
+  row[0] += (1 - fx) * (1 - fy);
+  row[1] += fx * (1 - fy);
+  below[0] += (1 - fx) * fy;
+  below[1] += fx * fy;
+}
+
+void AddCorrectedTile(const EventHistory& history, std::size_t row, std::size_t column, TimeNs t, const FlowField& flow,
+                      const HalfWindowLimits& limits, cv::Mat* image) {
+  const int left = static_cast<int>(column) * EventHistory::kTilePx;
+  const int top = static_cast<int>(row) * EventHistory::kTilePx;
+  const TileFlow tile(flow, left, top);
+  // No event of the tile has a longer window than its slowest; each is then asked for its own, without root and
+  // quotient.
+  const TimeNs longest = FromSeconds(limits.Of(tile.slowest));
+  const auto shortest = static_cast<float>(limits.shortest_s);
+  const auto motion2 = static_cast<float>(limits.motion_px * limits.motion_px);
+  constexpr float kPerTile = 1.0f / EventHistory::kTilePx;
+  history.ForEachInTile(row * history.tile_columns() + column, t - longest, t + longest,
+                        [&](int x, int y, TimeNs event_t, std::int8_t) {
+                          const Eigen::Array2f v =
+                              tile.At(kPerTile * static_cast<float>(x - left), kPerTile * static_cast<float>(y - top));
+                          const float dt = 1e-9f * static_cast<float>(event_t - t);
+                          const Eigen::Array2f moved = dt * v;
+                          if (std::abs(dt) > shortest && moved.matrix().squaredNorm() > motion2) return;
+                          Vote(static_cast<float>(x) - moved.x(), static_cast<float>(y) - moved.y(), image);
+                        });
+}
 
 struct Corner {
   float strength;
   int x, y;
 };
 
-std::vector<Corner> LocalMaxima(const cv::Mat& response, double border_px) {
-  cv::Mat dilated;
-  cv::dilate(response, dilated, cv::Mat());
+std::vector<Corner> LocalMaxima(const Harris& harris, int width, int height, double border_px) {
   std::vector<Corner> corners;
   const int border = static_cast<int>(std::ceil(border_px)) + 2;
-  for (int y = border; y < response.rows - border; ++y) {
-    for (int x = border; x < response.cols - border; ++x) {
-      const float strength = response.at<float>(y, x);
-      if (strength > 0.0f && strength == dilated.at<float>(y, x)) corners.push_back({strength, x, y});
+  for (int y = border; y < height - border; ++y) {
+    const float* const above = harris.row(y - 1);
+    const float* const row = harris.row(y);
+    const float* const below = harris.row(y + 1);
+    for (int x = border; x < width - border; ++x) {
+      const float strength = row[x];
+      if (!(strength > 0.0f) || strength < row[x - 1] || strength < row[x + 1]) continue;
+      const float others = std::max({above[x - 1], above[x], above[x + 1], below[x - 1], below[x], below[x + 1]});
+      if (strength >= others) corners.push_back({strength, x, y});
     }
   }
   // A total order, so that equal responses do not depend on the sort.
@@ -39,42 +111,28 @@ std::vector<Corner> LocalMaxima(const cv::Mat& response, double border_px) {
 }  // namespace
 
 cv::Mat CorrectedEventImage(const EventHistory& history, TimeNs t, const FlowField& flow, double motion_px,
-                            const TrackerOptions& options) {
-  cv::Mat image = cv::Mat::zeros(history.height(), history.width(), CV_32F);
-  const TimeNs longest = FromSeconds(0.5 * options.longest_window_s);
-  const double shortest_s = 0.5 * options.shortest_window_s;
-  const double half_motion2 = 0.25 * motion_px * motion_px;
-  history.ForEachBetween(t - longest, t + longest, [&](int ex, int ey, TimeNs et, std::int8_t) {
-    const Eigen::Vector2d v = flow.At(ex, ey);
-    const double dt = ToSeconds(et - t);
-    // HalfWindow() without its root and quotient: most of the events end here.
-    if (std::abs(dt) > shortest_s && dt * dt * v.squaredNorm() > half_motion2) return;
-    const double x = ex - v.x() * dt;
-    const double y = ey - v.y() * dt;
-    const int c = static_cast<int>(std::floor(x));
-    const int r = static_cast<int>(std::floor(y));
-    if (c < 0 || r < 0 || c + 1 >= image.cols || r + 1 >= image.rows) return;
-    const auto fx = static_cast<float>(x - c);
-    const auto fy = static_cast<float>(y - r);
-    float* row = image.ptr<float>(r);
-    float* below = image.ptr<float>(r + 1);
-    row[c] += (1 - fx) * (1 - fy);
-    row[c + 1] += fx * (1 - fy);
-    below[c] += (1 - fx) * fy;
-    below[c + 1] += fx * fy;
+                            const TrackerOptions& options, ThreadPool* pool) {
+  // Events leave their tile, so each stripe of tiles has an image of its own. The stripes do not depend on the pool.
+  std::array<cv::Mat, kStripes> stripes;
+  const std::size_t rows = history.tile_rows();
+  const HalfWindowLimits limits{0.5 * motion_px, 0.5 * options.shortest_window_s, 0.5 * options.longest_window_s};
+  pool->ForEach(kStripes, [&](std::size_t i) {
+    stripes[i] = cv::Mat::zeros(history.height(), history.width(), CV_32F);
+    for (std::size_t row = i * rows / kStripes; row < (i + 1) * rows / kStripes; ++row) {
+      for (std::size_t column = 0; column < history.tile_columns(); ++column) {
+        AddCorrectedTile(history, row, column, t, flow, limits, &stripes[i]);
+      }
+    }
   });
-  return image;
+  for (std::size_t i = 1; i < kStripes; ++i) stripes[0] += stripes[i];
+  return stripes[0];
 }
 
 std::vector<Eigen::Vector2d> DetectCorners(const cv::Mat& image, const std::vector<Eigen::Vector2d>& taken, int count,
-                                           const TrackerOptions& options) {
-  // The square root evens out pixels that fire often and pixels that fire once.
-  cv::Mat smooth;
-  cv::sqrt(image, smooth);
-  cv::GaussianBlur(smooth, smooth, cv::Size(0, 0), 1.0);
-  cv::Mat response;
-  cv::cornerHarris(smooth, response, kHarrisBlockPx, 3, kHarrisK);
-  const std::vector<Corner> corners = LocalMaxima(response, options.border_px);
+                                           const TrackerOptions& options, ThreadPool* pool) {
+  thread_local Harris harris;
+  harris.Respond(image, pool);
+  const std::vector<Corner> corners = LocalMaxima(harris, image.cols, image.rows, options.border_px);
   if (corners.empty()) return {};
   const auto strong = static_cast<std::size_t>((1.0 - kStrongCorner) * static_cast<double>(corners.size()));
   const auto weakest = static_cast<float>(options.corner_share * corners[strong].strength);

@@ -20,8 +20,14 @@ cv::Mat Squares() {
   return image;
 }
 
+std::vector<Vector2d> Detect(const cv::Mat& image, const std::vector<Vector2d>& taken, int count,
+                             const TrackerOptions& options = {}, int threads = 2) {
+  ThreadPool pool(threads);
+  return DetectCorners(image, taken, count, options, &pool);
+}
+
 TEST(DetectCorners, FindsTheCornersOfSquaresAndNothingElse) {
-  const auto corners = DetectCorners(Squares(), {}, 100, {});
+  const auto corners = Detect(Squares(), {}, 100);
   EXPECT_GE(corners.size(), 30u);
   for (const auto& corner : corners) {
     double nearest = 1e9;
@@ -40,7 +46,7 @@ TEST(DetectCorners, KeepsItsDistanceFromFeaturesAndFromEachOther) {
   TrackerOptions options;
   options.corner_spacing_px = 15.0;
   const std::vector<Vector2d> taken = {{20, 20}, {77, 77}};
-  const auto corners = DetectCorners(Squares(), taken, 100, options);
+  const auto corners = Detect(Squares(), taken, 100, options);
   ASSERT_FALSE(corners.empty());
   for (std::size_t i = 0; i < corners.size(); ++i) {
     for (const auto& point : taken) EXPECT_GE((corners[i] - point).norm(), 15.0);
@@ -49,7 +55,7 @@ TEST(DetectCorners, KeepsItsDistanceFromFeaturesAndFromEachOther) {
 }
 
 TEST(DetectCorners, SpreadsAFewOverTheWholeImage) {
-  const auto corners = DetectCorners(Squares(), {}, 12, {});
+  const auto corners = Detect(Squares(), {}, 12);
   ASSERT_EQ(corners.size(), 12u);
   const auto in = [&](double x0, double x1) {
     return std::ranges::count_if(corners, [&](const auto& c) { return c.x() >= x0 && c.x() < x1; });
@@ -59,9 +65,13 @@ TEST(DetectCorners, SpreadsAFewOverTheWholeImage) {
   EXPECT_GE(in(106, 160), 2);
 }
 
-TEST(DetectCorners, FindsNothingInAnEmptyImage) {
-  EXPECT_TRUE(DetectCorners(cv::Mat::zeros(50, 50, CV_32F), {}, 10, {}).empty());
+TEST(DetectCorners, FindsNothingInAnEmptyImage) { EXPECT_TRUE(Detect(cv::Mat::zeros(50, 50, CV_32F), {}, 10).empty()); }
+
+TEST(DetectCorners, FindsTheSameWithAnyNumberOfThreads) {
+  EXPECT_EQ(Detect(Squares(), {}, 100, {}, 1), Detect(Squares(), {}, 100, {}, 3));
 }
+
+TEST(DetectCorners, FindsNothingInATinyImage) { EXPECT_TRUE(Detect(cv::Mat::ones(9, 9, CV_32F), {}, 10).empty()); }
 
 TEST(CorrectedEventImage, IsSharperThanTheRawOne) {
   const evo::testing::CrossScene scene(40, 2);
@@ -72,7 +82,7 @@ TEST(CorrectedEventImage, IsSharperThanTheRawOne) {
   FlowField flow(scene.width, scene.height, options);
   const TimeNs t = 100'000'000;
   flow.Update(history, t, {}, &pool);
-  const cv::Mat corrected = CorrectedEventImage(history, t, flow, 8.5, options);
+  const cv::Mat corrected = CorrectedEventImage(history, t, flow, 8.5, options, &pool);
   cv::Mat raw = cv::Mat::zeros(scene.height, scene.width, CV_32F);
   history.ForEachBetween(t - 20'000'000, t + 20'000'000,
                          [&](int x, int y, TimeNs, std::int8_t) { raw.at<float>(y, x) += 1.0f; });

@@ -54,10 +54,17 @@ class EventHistory {
   /// Calls visit(x, y, t, polarity) for every event of [begin, end), tile by tile, in each by time.
   template <typename Visitor>
   void ForEachBetween(TimeNs begin, TimeNs end, Visitor visit) const {
-    for (const Tile& tile : tiles_) {
-      for (const Entry& entry : tile.Between(begin, end)) visit(entry.x, entry.y, entry.t, entry.polarity);
-    }
+    for (std::size_t i = 0; i < tiles_.size(); ++i) ForEachInTile(i, begin, end, visit);
   }
+  /// The same for one tile, by time. Tiles are counted row by row.
+  template <typename Visitor>
+  void ForEachInTile(std::size_t tile, TimeNs begin, TimeNs end, Visitor visit) const {
+    for (const Entry& entry : tiles_[tile].Between(begin, end)) visit(entry.x, entry.y, entry.t, entry.polarity);
+  }
+
+  static constexpr int kTilePx = 8;  ///< side of a tile
+  std::size_t tile_columns() const { return columns_; }
+  std::size_t tile_rows() const { return rows_; }
 
   int width() const { return width_; }
   int height() const { return height_; }

@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "evo/core/parallel.hpp"
 #include "evo/events/event_history.hpp"
 #include "evo/tracking/flow_field.hpp"
 #include "evo/tracking/tracker_options.hpp"
@@ -14,11 +15,11 @@ namespace evo {
 /// frame, figure 2c): CV_32F, events per pixel, sharp where the raw image is smeared. The window is as long as the flow
 /// needs to move `motion_px`, pixel by pixel.
 cv::Mat CorrectedEventImage(const EventHistory& history, TimeNs t, const FlowField& flow, double motion_px,
-                            const TrackerOptions& options);
+                            const TrackerOptions& options, ThreadPool* pool);
 
 /// Harris corners of a corrected event image, strongest first, spread over the image: at most `count`, none nearer than
 /// the options' spacing to another or to a point of `taken`.
 std::vector<Eigen::Vector2d> DetectCorners(const cv::Mat& image, const std::vector<Eigen::Vector2d>& taken, int count,
-                                           const TrackerOptions& options);
+                                           const TrackerOptions& options, ThreadPool* pool);
 
 }  // namespace evo

@@ -1,9 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "evo/events/event_history.hpp"
-#include "evo/tracking/density_map.hpp"
+#include "evo/tracking/event_density.hpp"
 
 namespace evo {
 
@@ -26,9 +27,13 @@ class FlowEstimator {
   double Refine(const LocalEvents& events, double half_window_s, Eigen::Vector2d* flow);
 
  private:
+  /// Propagates the events along `flow` to the reference instant: u_, v_.
+  void Propagate(const LocalEvents& events, const Eigen::Vector2d& flow);
+
   FlowOptions options_;
-  DensityMap map_;
-  AssociationField field_;
+  bool by_polarity_;
+  EventDensity density_;
+  std::vector<float> u_, v_;  // cells
 };
 
 }  // namespace evo

@@ -1,0 +1,67 @@
+#include "evo/tracking/event_density.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace evo {
+
+namespace {
+
+constexpr double kKernelReach = 3.0;  // sigmas
+constexpr std::ptrdiff_t kBlock = 8;  // cells computed at a time
+using Block = Eigen::Array<float, kBlock, 1>;
+using BlockMap = Eigen::Map<const Block>;
+
+}  // namespace
+
+EventDensity::EventDensity(int radius, int planes, double sigma)
+    : radius_(radius),
+      planes_(planes),
+      half_variance_(static_cast<float>(0.5 * sigma * sigma)),
+      longest_pull_(static_cast<float>(kLongestPullSigmas * sigma)),
+      kernel_(static_cast<std::size_t>(std::ceil(kKernelReach * sigma)) + 1),
+      margin_(std::max<std::ptrdiff_t>(2, static_cast<std::ptrdiff_t>(kernel_.size()) - 1)),
+      stride_(2 * radius + 1 + 2 * margin_) {
+  float sum = 0.0f;
+  for (std::size_t i = 0; i < kernel_.size(); ++i) {
+    kernel_[i] = static_cast<float>(std::exp(-0.5 * static_cast<double>(i * i) / (sigma * sigma)));
+    sum += i ? 2.0f * kernel_[i] : kernel_[i];
+  }
+  for (float& k : kernel_) k /= sum;
+  plane_cells_ = stride_ * stride_ + kBlock;  // the last block may reach beyond
+  votes_.resize(static_cast<std::size_t>(planes_ * plane_cells_));
+  rows_.resize(votes_.size());
+  smooth_.resize(votes_.size());
+}
+
+void EventDensity::Clear() {
+  std::ranges::fill(votes_, 0.0f);
+  events_ = 0;
+}
+
+void EventDensity::Convolve(const std::vector<float>& in, std::ptrdiff_t step, std::vector<float>* out) const {
+  // Rows run into one another, but only within the empty margin between them.
+  const auto reach = static_cast<std::ptrdiff_t>(kernel_.size()) - 1;
+  const std::ptrdiff_t first = margin_ * stride_;
+  const std::ptrdiff_t cells = (2 * radius_ + 1) * stride_;
+  for (int p = 0; p < planes_; ++p) {
+    const float* source = in.data() + p * plane_cells_ + first;
+    float* target = out->data() + p * plane_cells_ + first;
+    for (std::ptrdiff_t i = 0; i < cells; i += kBlock, source += kBlock, target += kBlock) {
+      Block sum = kernel_[0] * BlockMap(source);
+      for (std::ptrdiff_t k = 1; k <= reach; ++k) {
+        sum += kernel_[static_cast<std::size_t>(k)] * (BlockMap(source - k * step) + BlockMap(source + k * step));
+      }
+      Eigen::Map<Block>{target} = sum;
+    }
+  }
+}
+
+void EventDensity::Smooth(double outlier_share) {
+  Convolve(votes_, 1, &rows_);
+  Convolve(rows_, stride_, &smooth_);
+  const int side = 2 * radius_ + 1;
+  stray_ = static_cast<float>(std::max(1e-12, outlier_share * events_ / (planes_ * side * side)));
+}
+
+}  // namespace evo
