@@ -1,6 +1,7 @@
 #include "io/mvsec_events.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -32,16 +33,34 @@ std::string NoTime(double stamp) { return "the stamp " + FormatNumber(stamp) + "
 
 bool IsPolarity(double p) { return (p == 1.0) | (p == 0.0) | (p == -1.0); }
 
+// Added to a number below 2^51 it leaves the nearest integer in the lowest bits: a conversion that vectorises.
+constexpr double kToInteger = 0x1p52;
+
 /// False if one is not a whole number in [0, size).
-bool ConvertCoordinates(const double* values, std::size_t count, int size, std::uint16_t* coordinates) {
-  const double last = size - 1;
-  int bad = 0;
+bool ConvertCoordinates(const double* values, std::size_t count, int size, std::uint16_t* __restrict coordinates) {
+  const std::int64_t last = size - 1;
+  std::int64_t outside = 0;  // negative if there was one
+  std::int64_t broken = 0;   // not zero if there was one
   for (std::size_t i = 0; i < count; ++i) {
-    const auto pixel = static_cast<int>(std::min(std::max(0.0, values[i]), last));  // 0 for NaN
-    bad |= static_cast<double>(pixel) != values[i] ? 1 : 0;
+    const double shifted = values[i] + kToInteger;
+    const std::int64_t pixel = std::bit_cast<std::int64_t>(shifted) - std::bit_cast<std::int64_t>(kToInteger);
+    outside |= pixel | (last - pixel);
+    broken |= std::bit_cast<std::int64_t>((shifted - kToInteger) - values[i]);
     coordinates[i] = static_cast<std::uint16_t>(pixel);
   }
-  return bad == 0;
+  return outside >= 0 && broken == 0;
+}
+
+/// False if one is none of -1, 0 and 1.
+bool ConvertPolarities(const double* values, std::size_t count, std::int8_t* __restrict polarities) {
+  std::uint64_t broken = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double p = values[i];
+    broken |= std::bit_cast<std::uint64_t>(p * (p * p - 1.0)) << 1;  // without the sign of a zero
+    const std::uint64_t positive = std::bit_cast<std::uint64_t>(0.0 - p) >> 63;
+    polarities[i] = static_cast<std::int8_t>(2 * positive - 1);
+  }
+  return broken == 0;
 }
 
 }  // namespace
@@ -145,15 +164,11 @@ bool MvsecEvents::ConvertStamps(std::size_t count, TimeNs previous, EventColumns
 }
 
 bool MvsecEvents::ConvertPixels(std::size_t count, int width, int height, EventColumns* block) const {
-  const bool whole = ConvertCoordinates(values_.data(), count, width, block->x.data()) &
-                     ConvertCoordinates(values_.data() + count, count, height, block->y.data());
-  const double* const polarities = values_.data() + 3 * count;
-  int bad = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    bad |= IsPolarity(polarities[i]) ? 0 : 1;
-    block->polarity[i] = polarities[i] > 0.0 ? 1 : -1;
-  }
-  return whole && bad == 0;
+  const double* const x = values_.data();
+  const double* const y = x + count;
+  const double* const p = x + 3 * count;
+  return ConvertCoordinates(x, count, width, block->x.data()) &&
+         ConvertCoordinates(y, count, height, block->y.data()) && ConvertPolarities(p, count, block->polarity.data());
 }
 
 /// What is wrong with one row, in the order in which a reader would want to know; empty if nothing is.

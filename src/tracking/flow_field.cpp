@@ -17,6 +17,39 @@ constexpr double kCoarselySettledPx = 0.1;
 constexpr double kSettledPx = 0.02;
 constexpr double kCautiousShare = 0.5;  // of a window's motion, while the flow comes from elsewhere
 
+bool GatherForFlow(const EventHistory& history, TimeNs t, double x, double y, const Eigen::Vector2d& flow,
+                   TimeNs half_window, const TrackerOptions& options, LocalEvents* events) {
+  history.Gather({t, x, y, flow.x(), flow.y(), static_cast<double>(options.flow_patch_radius_px), half_window}, events);
+  events->Thin(static_cast<std::size_t>(options.most_events));
+  return events->size() >= static_cast<std::size_t>(options.fewest_events);
+}
+
+FlowEstimator MakeEstimator(const TrackerOptions& options, double cell_px, double sigma_px, double settled_px) {
+  return {options.flow_patch_radius_px + 2,
+          options.use_polarity ? 2 : 1,
+          {cell_px, sigma_px, options.outlier_share, options.iterations, settled_px}};
+}
+
+/// Comes near the flow; false where there are too few events.
+bool EstimateCoarseFlow(const EventHistory& history, TimeNs t, double x, double y, const TrackerOptions& options,
+                        LocalEvents* events, Eigen::Vector2d* flow) {
+  // A short window hardly moves the events even if the flow is unknown, but tells little of a slow flow; each window
+  // twice as long starts from a flow known twice as well, until the events have moved far enough.
+  FlowEstimator coarse = MakeEstimator(options, kCoarseCellPx, options.flow_sigma_px, kCoarselySettledPx);
+  const TimeNs longest = FromSeconds(0.5 * options.longest_window_s);
+  TimeNs half_window = flow->isZero() ? FromSeconds(0.5 * options.shortest_window_s)
+                                      : HalfWindow(*flow, kCautiousShare * options.window_motion_px, options);
+  for (bool settled = false; !settled; half_window *= 2) {
+    half_window = std::min(half_window, longest);
+    settled = half_window == longest;
+    if (!GatherForFlow(history, t, x, y, *flow, half_window, options, events)) continue;
+    if (!(coarse.Refine(*events, ToSeconds(half_window), flow) > 0.0)) return false;
+    settled = settled || flow->norm() * 2.0 * ToSeconds(half_window) >= options.window_motion_px;
+  }
+  half_window = HalfWindow(*flow, options.window_motion_px, options);
+  return GatherForFlow(history, t, x, y, *flow, half_window, options, events);
+}
+
 }  // namespace
 
 TimeNs HalfWindow(const Eigen::Vector2d& flow, double motion_px, const TrackerOptions& options) {
@@ -27,37 +60,10 @@ TimeNs HalfWindow(const Eigen::Vector2d& flow, double motion_px, const TrackerOp
 bool EstimateFlow(const EventHistory& history, TimeNs t, double x, double y, const TrackerOptions& options,
                   Eigen::Vector2d* flow) {
   thread_local LocalEvents events;
-  const int radius = options.flow_patch_radius_px + 2;
-  const int planes = options.use_polarity ? 2 : 1;
-  FlowEstimator coarse(
-      radius, planes,
-      {kCoarseCellPx, options.flow_sigma_px, options.outlier_share, options.iterations, kCoarselySettledPx});
-  FlowEstimator fine(radius, planes,
-                     {1.0, options.fine_sigma_px, options.outlier_share, options.iterations, kSettledPx});
-  const auto gather = [&](TimeNs half_window) {
-    history.Gather({t, x, y, flow->x(), flow->y(), static_cast<double>(options.flow_patch_radius_px), half_window},
-                   &events);
-    events.Thin(static_cast<std::size_t>(options.most_events));
-    return events.size() >= static_cast<std::size_t>(options.fewest_events);
-  };
-  const auto refine = [&](FlowEstimator& estimator, TimeNs half_window) {
-    return estimator.Refine(events, ToSeconds(half_window), flow) > 0.0;
-  };
-
-  // A short window hardly moves the events even if the flow is unknown, but tells little of a slow flow; each window
-  // twice as long starts from a flow known twice as well, until the events have moved far enough.
-  const TimeNs longest = FromSeconds(0.5 * options.longest_window_s);
-  TimeNs half_window = flow->isZero() ? FromSeconds(0.5 * options.shortest_window_s)
-                                      : HalfWindow(*flow, kCautiousShare * options.window_motion_px, options);
-  for (bool settled = false; !settled; half_window *= 2) {
-    half_window = std::min(half_window, longest);
-    settled = half_window == longest;
-    if (!gather(half_window)) continue;
-    if (!refine(coarse, half_window)) return false;
-    settled = settled || flow->norm() * 2.0 * ToSeconds(half_window) >= options.window_motion_px;
-  }
-  half_window = HalfWindow(*flow, options.window_motion_px, options);
-  return gather(half_window) && refine(fine, half_window);
+  if (!EstimateCoarseFlow(history, t, x, y, options, &events, flow)) return false;
+  FlowEstimator fine = MakeEstimator(options, 1.0, options.fine_sigma_px, kSettledPx);
+  const TimeNs half_window = HalfWindow(*flow, options.window_motion_px, options);
+  return fine.Refine(events, ToSeconds(half_window), flow) > 0.0;
 }
 
 FlowField::FlowField(int width, int height, const TrackerOptions& options)
@@ -91,7 +97,9 @@ FlowField::Cell FlowField::Estimate(const EventHistory& history, TimeNs t, const
                                     const Cell& start) const {
   Cell cell = start;
   if (!start.known) cell.flow.setZero();
-  cell.known = EstimateFlow(history, t, centre.x(), centre.y(), options_, &cell.flow);
+  thread_local LocalEvents events;
+  // Near is good enough for the image of events, and new features refine their flow themselves.
+  cell.known = EstimateCoarseFlow(history, t, centre.x(), centre.y(), options_, &events, &cell.flow);
   if (!cell.known) cell.flow.setZero();
   return cell;
 }

@@ -42,13 +42,13 @@ void MultiplyGradients(const float* above, const float* in, const float* below, 
 /// Sums of seven elements, `step` apart, around each x in [begin, end).
 void SumSevens(const float* in, std::ptrdiff_t step, std::ptrdiff_t begin, std::ptrdiff_t end, float* __restrict out) {
   for (std::ptrdiff_t x = begin; x < end; ++x) {
-    out[x] = in[x - 3 * step] + in[x - 2 * step] + in[x - step] + in[x] + in[x + step] + in[x + 2 * step] +
-             in[x + 3 * step];
+    out[x] =
+        in[x - 3 * step] + in[x - 2 * step] + in[x - step] + in[x] + in[x + step] + in[x + 2 * step] + in[x + 3 * step];
   }
 }
 
 void ToResponse(const float* xx, const float* xy, const float* yy, std::ptrdiff_t begin, std::ptrdiff_t end,
-             float* __restrict out) {
+                float* __restrict out) {
   for (std::ptrdiff_t x = begin; x < end; ++x) {
     const float trace = xx[x] + yy[x];
     out[x] = xx[x] * yy[x] - xy[x] * xy[x] - kHarrisK * trace * trace;
@@ -109,7 +109,7 @@ void Harris::RespondAlongRow(int y) {
     SumSevens(sums_[i].data() + y * width_, width_, kBorderPx, width_ - kBorderPx, windows[i].data());
   }
   ToResponse(windows[0].data(), windows[1].data(), windows[2].data(), kBorderPx, width_ - kBorderPx,
-               response_.data() + y * width_);
+             response_.data() + y * width_);
 }
 
 }  // namespace evo

@@ -7,8 +7,8 @@
 
 namespace evo {
 
-/// The Gaussian density of a few hundred events around (0, 0), and the mean shift in it: what AssociationField tabulates
-/// for many look-ups, computed only where the events are. One plane for each polarity, or one for both.
+/// The Gaussian density of a few hundred events around (0, 0), and the mean shift in it: what AssociationField
+/// tabulates for many look-ups, computed only where the events are. One plane for each polarity, or one for both.
 class EventDensity {
  public:
   /// All lengths in cells. Events farther out than `radius` in x or in y are left out.
@@ -84,9 +84,9 @@ class EventDensity {
   int planes_;
   float half_variance_;
   float longest_pull_;
-  std::vector<float> kernel_;    // [|distance|]
-  std::ptrdiff_t margin_;        // empty cells around a plane
-  std::ptrdiff_t stride_;        // from row to row
+  std::vector<float> kernel_;  // [|distance|]
+  std::ptrdiff_t margin_;      // empty cells around a plane
+  std::ptrdiff_t stride_;      // from row to row
   std::ptrdiff_t plane_cells_;
   std::vector<float> votes_, rows_, smooth_;
   float stray_ = 0.0f;
