@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <tuple>
 
 #include "evo/tracking/harris.hpp"
@@ -13,8 +15,9 @@ namespace {
 
 constexpr double kStrongCorner = 0.95;  // quantile
 constexpr int kBucketPx = 32;
+constexpr float kSmallestResponse = std::numeric_limits<float>::min();
 
-constexpr std::size_t kStripes = 4;  // of a corrected image, each with an image of its own
+constexpr std::size_t kStripes = 2;  // of a corrected image: more would cost more than they save
 
 /// The flow within a tile: bilinear between its corners.
 struct TileFlow {
@@ -87,18 +90,24 @@ struct Corner {
   int x, y;
 };
 
+/// Whether the positive values of a row are at least as large as their eight neighbours, at x in [begin, end).
+void MarkMaxima(const float* above, const float* row, const float* below, int begin, int end, int* __restrict marks) {
+  for (int x = begin; x < end; ++x) {
+    const float upper = std::max(std::max(above[x - 1], above[x]), above[x + 1]);
+    const float lower = std::max(std::max(below[x - 1], below[x]), below[x + 1]);
+    const float beside = std::max(row[x - 1], row[x + 1]);
+    marks[x] = row[x] >= std::max(std::max(upper, lower), std::max(beside, kSmallestResponse)) ? 1 : 0;
+  }
+}
+
 std::vector<Corner> LocalMaxima(const Harris& harris, int width, int height, double border_px) {
   std::vector<Corner> corners;
+  std::vector<int> marks(static_cast<std::size_t>(width));
   const int border = static_cast<int>(std::ceil(border_px)) + 2;
   for (int y = border; y < height - border; ++y) {
-    const float* const above = harris.row(y - 1);
-    const float* const row = harris.row(y);
-    const float* const below = harris.row(y + 1);
+    MarkMaxima(harris.row(y - 1), harris.row(y), harris.row(y + 1), border, width - border, marks.data());
     for (int x = border; x < width - border; ++x) {
-      const float strength = row[x];
-      if (!(strength > 0.0f) || strength < row[x - 1] || strength < row[x + 1]) continue;
-      const float others = std::max({above[x - 1], above[x], above[x + 1], below[x - 1], below[x], below[x + 1]});
-      if (strength >= others) corners.push_back({strength, x, y});
+      if (marks[static_cast<std::size_t>(x)]) corners.push_back({harris.row(y)[x], x, y});
     }
   }
   // A total order, so that equal responses do not depend on the sort.
@@ -106,6 +115,18 @@ std::vector<Corner> LocalMaxima(const Harris& harris, int width, int height, dou
     return std::tuple(-a.strength, a.y, a.x) < std::tuple(-b.strength, b.y, b.x);
   });
   return corners;
+}
+
+/// Events within `radius` px of (x, y), in x and in y.
+double EventsAround(const cv::Mat& image, int x, int y, int radius) {
+  const int left = std::max(0, x - radius);
+  const int right = std::min(image.cols - 1, x + radius);
+  double sum = 0.0;
+  for (int r = std::max(0, y - radius); r <= std::min(image.rows - 1, y + radius); ++r) {
+    const float* const row = image.ptr<float>(r);
+    sum += std::accumulate(row + left, row + right + 1, 0.0f);
+  }
+  return sum;
 }
 
 }  // namespace
@@ -129,7 +150,7 @@ cv::Mat CorrectedEventImage(const EventHistory& history, TimeNs t, const FlowFie
 }
 
 std::vector<Eigen::Vector2d> DetectCorners(const cv::Mat& image, const std::vector<Eigen::Vector2d>& taken, int count,
-                                           const TrackerOptions& options, ThreadPool* pool) {
+                                           double fewest_events, const TrackerOptions& options, ThreadPool* pool) {
   thread_local Harris harris;
   harris.Respond(image, pool);
   const std::vector<Corner> corners = LocalMaxima(harris, image.cols, image.rows, options.border_px);
@@ -159,6 +180,7 @@ std::vector<Eigen::Vector2d> DetectCorners(const cv::Mat& image, const std::vect
       if (used[i] || bucket(corner.x, corner.y) >= round) continue;
       const Eigen::Vector2d point(corner.x, corner.y);
       used[i] = 1;
+      if (EventsAround(image, corner.x, corner.y, options.patch_radius_px) < fewest_events) continue;
       if (std::ranges::any_of(occupied, [&](const auto& o) { return (o - point).squaredNorm() < spacing2; })) continue;
       ++bucket(corner.x, corner.y);
       occupied.push_back(point);

@@ -141,8 +141,9 @@ void FeatureTracker::Refill(const EventHistory& history, TimeNs t) {
   }
   flow_field_.Update(history, t, samples, pool_);
   const cv::Mat image = CorrectedEventImage(history, t, flow_field_, options_.corner_window_motion_px, options_, pool_);
-  const auto corners =
-      DetectCorners(image, taken, options_.features - static_cast<int>(features_.size()), options_, pool_);
+  const double fewest_events = options_.fewest_events * options_.corner_window_motion_px / options_.window_motion_px;
+  const int missing = options_.features - static_cast<int>(features_.size());
+  const auto corners = DetectCorners(image, taken, missing, fewest_events, options_, pool_);
   std::vector<std::optional<TrackedFeature>> born(corners.size());
   pool_->ForEach(corners.size(), [&](std::size_t i) { born[i] = Birth(history, t, corners[i]); });
   for (auto& feature : born) {

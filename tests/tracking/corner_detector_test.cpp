@@ -23,7 +23,7 @@ cv::Mat Squares() {
 std::vector<Vector2d> Detect(const cv::Mat& image, const std::vector<Vector2d>& taken, int count,
                              const TrackerOptions& options = {}, int threads = 2) {
   ThreadPool pool(threads);
-  return DetectCorners(image, taken, count, options, &pool);
+  return DetectCorners(image, taken, count, 0.0, options, &pool);
 }
 
 TEST(DetectCorners, FindsTheCornersOfSquaresAndNothingElse) {
@@ -66,6 +66,17 @@ TEST(DetectCorners, SpreadsAFewOverTheWholeImage) {
 }
 
 TEST(DetectCorners, FindsNothingInAnEmptyImage) { EXPECT_TRUE(Detect(cv::Mat::zeros(50, 50, CV_32F), {}, 10).empty()); }
+
+TEST(DetectCorners, LeavesOutPatchesWithTooFewEvents) {
+  cv::Mat image = Squares();
+  image(cv::Rect(0, 0, 80, 120)) *= 0.1f;  // a corner's patch holds about 400 events, on the left 40
+  TrackerOptions options;
+  options.corner_share = 0.0;
+  ThreadPool pool(1);
+  const auto corners = DetectCorners(image, {}, 100, 200.0, options, &pool);
+  EXPECT_GE(corners.size(), 10u);
+  for (const auto& corner : corners) EXPECT_GE(corner.x(), 70.0);
+}
 
 TEST(DetectCorners, FindsTheSameWithAnyNumberOfThreads) {
   EXPECT_EQ(Detect(Squares(), {}, 100, {}, 1), Detect(Squares(), {}, 100, {}, 3));

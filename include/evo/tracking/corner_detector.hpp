@@ -18,8 +18,8 @@ cv::Mat CorrectedEventImage(const EventHistory& history, TimeNs t, const FlowFie
                             const TrackerOptions& options, ThreadPool* pool);
 
 /// Harris corners of a corrected event image, strongest first, spread over the image: at most `count`, none nearer than
-/// the options' spacing to another or to a point of `taken`.
+/// the options' spacing to another or to a point of `taken`, each with `fewest_events` in its patch.
 std::vector<Eigen::Vector2d> DetectCorners(const cv::Mat& image, const std::vector<Eigen::Vector2d>& taken, int count,
-                                           const TrackerOptions& options, ThreadPool* pool);
+                                           double fewest_events, const TrackerOptions& options, ThreadPool* pool);
 
 }  // namespace evo
