@@ -93,6 +93,7 @@ void EventHistory::Gather(const MovingPatch& patch, LocalEvents* local) const {
   const auto vx = static_cast<float>(patch.vx);
   const auto vy = static_cast<float>(patch.vy);
   const auto radius = static_cast<float>(patch.radius);
+  const TimeNs patch_t = patch.t;
 
   std::size_t count = 0;
   for (std::size_t row = row_begin; row < row_end; ++row) {
@@ -101,15 +102,20 @@ void EventHistory::Gather(const MovingPatch& patch, LocalEvents* local) const {
           tiles_[row * columns_ + column].Between(patch.t - patch.half_window, patch.t + patch.half_window + 1);
       const std::size_t most = count + entries.size();
       if (most > local->size()) local->resize(2 * most);
+      // Plain pointers, which a write of a polarity cannot change.
+      float* const xs = local->x.data();
+      float* const ys = local->y.data();
+      float* const dts = local->dt.data();
+      std::int8_t* const polarities = local->polarity.data();
       // Every event is written, but stays only if the next one does not overwrite it: no branch to mispredict.
       for (const Entry& entry : entries) {
-        const float dt = 1e-9f * static_cast<float>(entry.t - patch.t);
+        const float dt = 1e-9f * static_cast<float>(entry.t - patch_t);
         const float x = static_cast<float>(entry.x) - cx;
         const float y = static_cast<float>(entry.y) - cy;
-        local->x[count] = x;
-        local->y[count] = y;
-        local->dt[count] = dt;
-        local->polarity[count] = entry.polarity;
+        xs[count] = x;
+        ys[count] = y;
+        dts[count] = dt;
+        polarities[count] = entry.polarity;
         const bool is_inside = (std::abs(x - vx * dt) <= radius) & (std::abs(y - vy * dt) <= radius);
         count += is_inside ? 1 : 0;
       }

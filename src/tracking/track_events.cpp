@@ -12,6 +12,8 @@ namespace evo {
 
 namespace {
 
+constexpr std::size_t kFramesBetweenDrops = 4;
+
 void DropLoneObservations(Tracks* tracks) {
   std::unordered_map<std::int64_t, int> count;
   for (const auto& observation : *tracks) ++count[observation.id];
@@ -33,7 +35,8 @@ TrackingResult TrackEvents(EventReader* reader, int width, int height, const Tra
   const TimeNs half_window = FromSeconds(0.5 * options.longest_window_s);
 
   const auto process = [&](TimeNs t) {
-    history.DropBefore(t - tracker->before());
+    // Looking at every tile costs more than some frames' events more do.
+    if (result.frames.size() % kFramesBetweenDrops == 0) history.DropBefore(t - tracker->before());
     tracker->Process(history, t);
     result.frames.push_back(t);
     if (tracker->detected()) ++result.key_frames;
