@@ -30,7 +30,7 @@ FlowEstimator MakeEstimator(const TrackerOptions& options, double cell_px, doubl
           {cell_px, sigma_px, options.outlier_share, options.iterations, settled_px}};
 }
 
-/// Comes near the flow; false where there are too few events.
+/// Comes near the flow and gathers the events of its window; false where there are too few.
 bool EstimateCoarseFlow(const EventHistory& history, TimeNs t, double x, double y, const TrackerOptions& options,
                         LocalEvents* events, Eigen::Vector2d* flow) {
   // A short window hardly moves the events even if the flow is unknown, but tells little of a slow flow; each window
@@ -50,6 +50,16 @@ bool EstimateCoarseFlow(const EventHistory& history, TimeNs t, double x, double 
   return GatherForFlow(history, t, x, y, *flow, half_window, options, events);
 }
 
+/// The flow to within some steps that move the events at the window's ends by `settled_px`.
+bool EstimateFlowTo(double settled_px, const EventHistory& history, TimeNs t, double x, double y,
+                    const TrackerOptions& options, Eigen::Vector2d* flow) {
+  thread_local LocalEvents events;
+  if (!EstimateCoarseFlow(history, t, x, y, options, &events, flow)) return false;
+  FlowEstimator fine = MakeEstimator(options, 1.0, options.fine_sigma_px, settled_px);
+  const TimeNs half_window = HalfWindow(*flow, options.window_motion_px, options);
+  return fine.Refine(events, ToSeconds(half_window), flow) > 0.0;
+}
+
 }  // namespace
 
 TimeNs HalfWindow(const Eigen::Vector2d& flow, double motion_px, const TrackerOptions& options) {
@@ -59,11 +69,7 @@ TimeNs HalfWindow(const Eigen::Vector2d& flow, double motion_px, const TrackerOp
 
 bool EstimateFlow(const EventHistory& history, TimeNs t, double x, double y, const TrackerOptions& options,
                   Eigen::Vector2d* flow) {
-  thread_local LocalEvents events;
-  if (!EstimateCoarseFlow(history, t, x, y, options, &events, flow)) return false;
-  FlowEstimator fine = MakeEstimator(options, 1.0, options.fine_sigma_px, kSettledPx);
-  const TimeNs half_window = HalfWindow(*flow, options.window_motion_px, options);
-  return fine.Refine(events, ToSeconds(half_window), flow) > 0.0;
+  return EstimateFlowTo(kSettledPx, history, t, x, y, options, flow);
 }
 
 FlowField::FlowField(int width, int height, const TrackerOptions& options)
@@ -97,9 +103,8 @@ FlowField::Cell FlowField::Estimate(const EventHistory& history, TimeNs t, const
                                     const Cell& start) const {
   Cell cell = start;
   if (!start.known) cell.flow.setZero();
-  thread_local LocalEvents events;
   // Near is good enough for the image of events, and new features refine their flow themselves.
-  cell.known = EstimateCoarseFlow(history, t, centre.x(), centre.y(), options_, &events, &cell.flow);
+  cell.known = EstimateFlowTo(kCoarselySettledPx, history, t, centre.x(), centre.y(), options_, &cell.flow);
   if (!cell.known) cell.flow.setZero();
   return cell;
 }
