@@ -1,5 +1,5 @@
 # What bench_scenes.sh and bench_tracking.sh share; to be sourced by them.
-# shellcheck shell=bash
+# shellcheck shell=bash disable=SC2034
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
 fail() {
@@ -20,6 +20,14 @@ find_program() {
   [ -x "$EVO_RUN" ] || fail "$EVO_RUN is not a program; correct EVO_RUN"
   export EVO_RUN
   program=$(sha256sum <"$EVO_RUN")
+}
+
+# scene_file SCENE: its file, from a name in configs/scenes or a path; [:[FROM+]SECONDS] at its end is left out.
+scene_file() {
+  local file=${1%%:*}
+  [ -e "$file" ] || file=$root/configs/scenes/$file.yaml
+  [ -e "$file" ] || fail "there is no scene ${1%%:*}; there are $(cd "$root/configs/scenes" && echo *.yaml)"
+  echo "$file"
 }
 
 # judge_tracks RESULTS TRUTH CALIBRATION [OPTION...]: judges RESULTS/tracks.txt into RESULTS/track_quality.

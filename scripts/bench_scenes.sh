@@ -196,9 +196,7 @@ print_table() {
 names=()
 for scene in "${scenes[@]}"; do
   seconds=${scene#"${scene%%:*}"}
-  file=${scene%%:*}
-  [ -e "$file" ] || file=$root/configs/scenes/$file.yaml
-  [ -e "$file" ] || fail "there is no scene ${scene%%:*}; there are $(cd "$root/configs/scenes" && echo *.yaml)"
+  file=$(scene_file "$scene")
   for seed in ${seeds//,/ }; do
     simulate "$file" "$seed" "${seconds#:}"
     names+=("$name")
