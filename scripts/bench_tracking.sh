@@ -45,7 +45,7 @@ fails its row says so, and the script ends with 1.
   --out DIR                default out/bench_tracking
   --scaling                instead of all that: time and memory, see below
   --long                   with --scaling: memory over 10 minutes, too. Simulating them takes 10 to 30 minutes and
-                           120 MB, which are deleted afterwards
+                           300 MB, which are deleted afterwards
 
 Speed. One run at a time. Wall time is that of the stages in the manifest: reading, tracking and writing tracks.txt;
 "median" and "best" are over the repeats. CPU time is that of the whole process, its median: on a machine that is busy

@@ -75,8 +75,8 @@ scaling_rows_of_slow_drive() {
   local folder=$sequences/slow/driving_day_${1}_600 done=$out/scaling/length/slow.txt repeats=1 setting seconds key
   local with=() simulate_with=()
   for setting in scene.calibration=davis240c motion.vehicle.speed_m_s=1 motion.vehicle.duration_s=600 \
-    simulation.samples=1 simulation.longest_step_s=0.01 simulation.image_hz=0 simulation.depth_hz=0 \
-    output.pose_hz=20; do
+    sensor.threshold_on=0.35 sensor.threshold_off=0.12 simulation.samples=1 simulation.longest_step_s=0.01 \
+    simulation.image_hz=0 simulation.depth_hz=0 output.pose_hz=20; do
     with+=(--set "$setting")
     simulate_with+=(--simulate-set "$setting")
   done
