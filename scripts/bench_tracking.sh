@@ -121,6 +121,7 @@ check --features "$features" '[1-9][0-9]*'
 [[ $threads =~ ^[1-9][0-9]*$ ]] || fail "--threads cannot be '$threads': a number from 1 on"
 $scaling || ! $long || fail "--long goes with --scaling"
 ! $scaling || [ ${#recordings[@]} -eq 0 ] || fail "--recording does not go with --scaling"
+[[ ${settings[*]} != *tracker.@(method|features)=* ]] || fail "--set cannot change these; see --methods and --features"
 for scene in "${scenes[@]}"; do scene_file "$scene" >/dev/null; done
 
 part_pattern='^(.+):(([0-9.]+)\+)?([0-9.]+)$' # FOLDER, FROM and SECONDS are groups 1, 3 and 4

@@ -182,7 +182,7 @@ TEST_F(BenchTrackingTest, ARunThatFailsHasARow) {
 TEST_F(BenchTrackingTest, WrongWordsAreRefusedBeforeAnythingIsDone) {
   for (const std::string words :
        {"--speed 3", "--methods em,lk swift.yaml", "--features 0", "--seeds 1,", "--repeats 0", "--threads x", "--set",
-        "swift.yaml nowhere", "--recording nowhere", "--long", "--scaling --recording ."}) {
+        "--set tracker.features=9", "swift.yaml nowhere", "--recording nowhere", "--long", "--scaling --recording ."}) {
     EXPECT_EQ(Bench(words), 2) << words;
     EXPECT_TRUE(err.starts_with("bench_tracking: error: ")) << words << ": " << err;
     EXPECT_EQ(std::ranges::count(err, '\n'), 1) << err;
