@@ -152,8 +152,10 @@ targets='
   driving_night  0    track_error_median_px       1    <=  0.5
   driving_day    0    expected_age_at_5_px_share  1    >=  0.75
   driving_night  0    expected_age_at_5_px_share  1    >=  0.65
-  driving_day    0    expected_age_over_klt       1    >=  1.5
-  driving_night  0    expected_age_over_klt       1    >=  1.5
+  driving_day    0    age_share_over_klts         1    >=  1.5
+  driving_night  0    age_share_over_klts         1    >=  1.5
+  driving_day    0    age_s_over_klts             1    >=  1.5
+  driving_night  0    age_s_over_klts             1    >=  1.5
   driving_day    0    lifetime_frames             1    >   33
   driving_night  0    lifetime_frames             1    >   29
   driving_day    0    tracks_over_3_px_share      100  <   2
@@ -178,9 +180,11 @@ print_targets() {
       n = split(targets, lines, ";")
       for (row = 1; row <= rows; ++row) {
         scene = scenes[row]
-        age = value[scene, "em", features[row], "expected_age_at_5_px_share"]
-        klt = value[scene, "klt", features[row], "expected_age_at_5_px_share"]
-        value[scene, "em", features[row], "expected_age_over_klt"] = age != "" && klt > 0 ? age / klt : ""
+        for (i = split("share s", units, " "); i > 0; --i) {
+          age = value[scene, "em", features[row], "expected_age_at_5_px_" units[i]]
+          klt = value[scene, "klt", features[row], "expected_age_at_5_px_" units[i]]
+          value[scene, "em", features[row], "age_" units[i] "_over_klts"] = age != "" && klt > 0 ? age / klt : ""
+        }
         for (line = 1; line <= n; ++line) {
           if (split(lines[line], target, " ") == 0 || target[1] != substr(scene, 1, index(scene ":", ":") - 1)) continue
           if (target[2] > 0 && target[2] != features[row]) continue
@@ -192,7 +196,7 @@ print_targets() {
           reached = value[scene, "em", features[row], name]
           if (reached != "") reached *= target[4]
           live = value[scene, "em", features[row], "mean_live_features"]
-          note = target[2] > 0 && live < 0.9 * target[2] ? sprintf(", but only %.0f were alive", live) : ""
+          note = target[2] > 0 && live < 0.9 * target[2] ? sprintf(", with %.0f alive", live) : ""
           if (target[4] == 100) sub(/_share$/, "_percent", name)
           printf "%-22s%9d  %-28s%3s%6s%10s  %s\n", scene, features[row], name, target[5], target[6],
             reached == "" ? "-" : sprintf("%.3g", reached), verdict(reached, target[5], target[6] + 0) note

@@ -97,7 +97,7 @@ TEST_F(BenchTrackingTest, RowsMediansAndTargets) {
   EXPECT_NE(out.find("\nMedians over the seeds\n"), std::string::npos) << out;
   EXPECT_NE(out.find("\nTargets of em"), std::string::npos) << out;
   EXPECT_NE(out.find("lifetime_frames               >    33"), std::string::npos) << out;
-  EXPECT_NE(out.find("expected_age_over_klt        >=   1.5"), std::string::npos) << out;
+  EXPECT_NE(out.find("age_share_over_klts          >=   1.5"), std::string::npos) << out;
   EXPECT_EQ(out.find("real_time_factor_median"), std::string::npos) << "has targets for 100 and 300 features only";
   EXPECT_EQ(ReadFile(folder / "out/bench_tracking/tracking.txt"), out);
 }
