@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
 # Simulates scenes, runs evo-run on them and prints one table: see --help.
 set -euo pipefail
+# shellcheck source=scripts/bench_common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/bench_common.sh"
 
 usage() {
   cat <<'END'
@@ -28,7 +30,7 @@ file, other settings or, of the results, by another build. If a run fails its ro
                            a parameter for `evo-run simulate`; may be repeated
   --sequences DIR          default out/scenes
   --out DIR                default out/bench_scenes
-  --simulate-only          no runs, no table
+  --simulate-only          no runs, no table; prints the folders of the sequences
   --anew                   make the sequences anew: needed where the simulator itself has changed
   --delete                 delete the files of each sequence after use: 5 to 20 MB for a second of it
 
@@ -36,12 +38,6 @@ EVO_RUN names the program; without it build/release is brought up to date and us
 END
 }
 
-fail() {
-  echo "bench_scenes: error: $1" >&2
-  exit 2
-}
-
-root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 seeds=1
 duration=8
 run_settings=()
@@ -74,16 +70,7 @@ while [ $# -gt 0 ]; do
 done
 [ ${#scenes[@]} -gt 0 ] || scenes=("$root"/configs/scenes/*.yaml)
 
-if [ -z "${EVO_RUN:-}" ]; then
-  EVO_RUN=$root/build/release/bin/evo-run
-  if [ -e "$root/build/release/build.ninja" ]; then
-    cmake --build "$root/build/release" --target evo-run >&2
-  else
-    "$root/scripts/setup.sh" >&2
-  fi
-fi
-[ -x "$EVO_RUN" ] || fail "$EVO_RUN is not a program; correct EVO_RUN"
-program=$(sha256sum <"$EVO_RUN")
+find_program
 
 # How the camera moves and how long, from all parameters of a scene on stdin.
 motion_of() {
@@ -135,20 +122,13 @@ is_up_to_date() {
 
 # Runs and judges the sequence `name`, unless this is done already.
 run() {
-  local folder=$sequences/$name results=$out/$name calibration
+  local folder=$sequences/$name results=$out/$name
   is_up_to_date && return
   "$root/scripts/sweep_run.sh" "$results" "$EVO_RUN" run --events "$folder" "${run_settings[@]}" >&2
   if [ -e "$results/tracks.txt" ]; then
-    calibration=$(find "$folder" -name 'camchain*.yaml' -o -name calib.txt)
-    "$EVO_RUN" evaluate --tracks "$results/tracks.txt" --ground-truth "$folder"/*_gt.hdf5 \
-      --calibration "$calibration" --out "$results/track_quality" --quiet >/dev/null || true
+    judge_tracks "$results" "$folder"/*_gt.hdf5 "$(calibration_of "$folder")" || true
   fi
   run_key >"$results/made_from.txt"
-}
-
-# json FILE KEY: the number of that key, which is unique in a manifest.
-json() {
-  sed -n "s/^ *\"$2\": \([0-9.e+-]*\),*$/\1/p" "$1" 2>/dev/null | head -n 1
 }
 
 # summary ALIGNMENT COLUMN of the run `name`.
@@ -156,12 +136,6 @@ summary() {
   awk -F, -v alignment="$1" -v column="$2" '
     NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i }
     $2 == alignment { print $at[column] }' "$out/$name/summary.csv" 2>/dev/null || true
-}
-
-# quantity FILE NAME UNIT [THRESHOLD]: the value in a table of lifetimes or of track quality.
-quantity() {
-  awk -F, -v name="$2" -v unit="$3" -v threshold="${4:-}" \
-    '$1 == name && $2 == unit && $3 == threshold { print $NF; exit }' "$out/$name/$1" 2>/dev/null || true
 }
 
 header=scene,seed,simulated_s,path_m,events,negative_per_positive,simulate_wall_s,simulate_cpu_s,simulate_peak_memory_mb
@@ -172,6 +146,7 @@ header+=,lifetime_frames,lifetime_s,track_error_median_px,expected_feature_age_s
 row() {
   local made=$sequences/$name/manifest.json run=$out/$name/manifest.json failure=""
   local part=${name##*_} scene_seed=${name%_*} events positive
+  local quality=$out/$name/track_quality/track_quality.csv
   events=$(json "$made" events)
   positive=$(json "$made" positive_events)
   [ ! -e "$out/$name/failure.txt" ] || failure=$(tr ',"' ';'"'" <"$out/$name/failure.txt")
@@ -182,9 +157,9 @@ row() {
     "$(summary origin-scale coverage)" "$(summary origin-scale rebootstraps)"
     "$(summary origin-scale mean_planar_percent)" "$(summary origin-scale max_planar_percent)"
     "$(summary sim3 mean_planar_percent)" "$(summary sim3 max_planar_percent)"
-    "$(quantity lifetime.csv mean frames)" "$(quantity lifetime.csv mean s)"
-    "$(quantity track_quality/track_quality.csv track_error_median px 5.000000000)"
-    "$(quantity track_quality/track_quality.csv expected_feature_age_normalized_1_to_31_px share)"
+    "$(quantity "$out/$name/lifetime.csv" mean frames)" "$(quantity "$out/$name/lifetime.csv" mean s)"
+    "$(quantity "$quality" track_error_median px 5.000000000)"
+    "$(quantity "$quality" expected_feature_age_normalized_1_to_31_px share)"
     "$(awk -v recorded="$(json "$run" recorded_s)" -v track="$(json "$run" track)" -v odometry="$(json "$run" odometry)" \
       'BEGIN { if (track + odometry > 0) printf "%.4f", recorded / (track + odometry) }')"
     "$(json "$run" cpu_time_s)" "$failure"
@@ -221,13 +196,14 @@ print_table() {
 names=()
 for scene in "${scenes[@]}"; do
   seconds=${scene#"${scene%%:*}"}
-  file=${scene%%:*}
-  [ -e "$file" ] || file=$root/configs/scenes/$file.yaml
-  [ -e "$file" ] || fail "there is no scene ${scene%%:*}; there are $(cd "$root/configs/scenes" && echo *.yaml)"
+  file=$(scene_file "$scene")
   for seed in ${seeds//,/ }; do
     simulate "$file" "$seed" "${seconds#:}"
     names+=("$name")
-    $simulate_only && continue
+    if $simulate_only; then
+      echo "$sequences/$name"
+      continue
+    fi
     run
     if $delete; then
       find "$sequences/$name" -mindepth 1 ! -name manifest.json ! -name made_from.txt -delete
