@@ -109,8 +109,8 @@ TrackingOutcome RunTrackingStage(StageContext* context, Recording* recording) {
     Progress progress("tracking", context->show_progress);
     return NamingPlace(recording->events.string(), [&] {
       return TrackEvents(
-          recording->reader.get(), recording->camera.width(), recording->camera.height(), context->config.tracker,
-          &context->pool, [&](double done) { progress.Update(done); },
+          recording->reader.get(), recording->camera, context->config.tracker, &context->pool,
+          [&](double done) { progress.Update(done); },
           draw ? [&](const TrackingView& view) { drawing.Observe(view); } : std::function<void(const TrackingView&)>{});
     });
   });

@@ -14,7 +14,7 @@ namespace evo {
 namespace {
 
 constexpr double kStrongCorner = 0.95;  // quantile
-constexpr int kBucketPx = 32;
+constexpr int kBucketPx = 48;
 constexpr float kSmallestResponse = std::numeric_limits<float>::min();
 
 constexpr std::size_t kStripes = 2;  // of a corrected image: more would cost more than they save
@@ -129,6 +129,53 @@ double EventsAround(const cv::Mat& image, int x, int y, int radius) {
   return sum;
 }
 
+/// Corners spread over the image.
+class CornerSelection {
+ public:
+  CornerSelection(int width, int height, const std::vector<Eigen::Vector2d>& taken)
+      : columns_((width + kBucketPx - 1) / kBucketPx),
+        filled_(static_cast<std::size_t>(columns_ * ((height + kBucketPx - 1) / kBucketPx)), 0),
+        occupied_(taken) {
+    for (const auto& point : taken) ++Bucket(point.x(), point.y());
+  }
+
+  const std::vector<Eigen::Vector2d>& found() const { return found_; }
+
+  /// Adds those of `corners`, strongest first, that are no nearer than `spacing_px` to others, until `count` are found.
+  /// Fills the emptiest buckets first: round n accepts only corners whose bucket holds fewer than n features.
+  void Add(const std::vector<Corner>& corners, std::size_t count, double spacing_px) {
+    const double spacing2 = spacing_px * spacing_px;
+    const int most = kBucketPx * kBucketPx / std::max(1, static_cast<int>(spacing2)) + 1;
+    std::vector<char> used(corners.size(), 0);
+    for (int round = 1; round <= most; ++round) {
+      for (std::size_t i = 0; i < corners.size(); ++i) {
+        if (found_.size() >= count) return;
+        const Corner& corner = corners[i];
+        if (used[i] || Bucket(corner.x, corner.y) >= round) continue;
+        used[i] = 1;
+        const Eigen::Vector2d point(corner.x, corner.y);
+        if (std::ranges::any_of(occupied_, [&](const auto& o) { return (o - point).squaredNorm() < spacing2; })) {
+          continue;
+        }
+        ++Bucket(corner.x, corner.y);
+        occupied_.push_back(point);
+        found_.push_back(point);
+      }
+    }
+  }
+
+ private:
+  int& Bucket(double x, double y) {
+    return filled_[static_cast<std::size_t>(static_cast<int>(y) / kBucketPx * columns_ +
+                                            static_cast<int>(x) / kBucketPx)];
+  }
+
+  int columns_;
+  std::vector<int> filled_;  // features in each bucket
+  std::vector<Eigen::Vector2d> occupied_;
+  std::vector<Eigen::Vector2d> found_;
+};
+
 }  // namespace
 
 cv::Mat CorrectedEventImage(const EventHistory& history, TimeNs t, const FlowField& flow, double motion_px,
@@ -153,41 +200,19 @@ std::vector<Eigen::Vector2d> DetectCorners(const cv::Mat& image, const std::vect
                                            double fewest_events, const TrackerOptions& options, ThreadPool* pool) {
   thread_local Harris harris;
   harris.Respond(image, pool);
-  const std::vector<Corner> corners = LocalMaxima(harris, image.cols, image.rows, options.border_px);
+  std::vector<Corner> corners = LocalMaxima(harris, image.cols, image.rows, options.border_px);
   if (corners.empty()) return {};
   const auto strong = static_cast<std::size_t>((1.0 - kStrongCorner) * static_cast<double>(corners.size()));
   const auto weakest = static_cast<float>(options.corner_share * corners[strong].strength);
-
-  const int columns = (image.cols + kBucketPx - 1) / kBucketPx;
-  const int rows = (image.rows + kBucketPx - 1) / kBucketPx;
-  std::vector<int> filled(static_cast<std::size_t>(columns * rows), 0);
-  const auto bucket = [&](double x, double y) -> int& {
-    return filled[static_cast<std::size_t>(static_cast<int>(y) / kBucketPx * columns +
-                                           static_cast<int>(x) / kBucketPx)];
-  };
-  for (const auto& point : taken) ++bucket(point.x(), point.y());
-
-  // Fill the emptiest buckets first: round n accepts only corners whose bucket holds fewer than n features.
-  std::vector<Eigen::Vector2d> occupied = taken;
-  std::vector<Eigen::Vector2d> found;
-  const double spacing2 = options.corner_spacing_px * options.corner_spacing_px;
-  const int most = kBucketPx * kBucketPx / std::max(1, static_cast<int>(spacing2)) + 1;
-  std::vector<char> used(corners.size(), 0);
-  for (int round = 1; round <= most && static_cast<int>(found.size()) < count; ++round) {
-    for (std::size_t i = 0; i < corners.size() && static_cast<int>(found.size()) < count; ++i) {
-      const Corner& corner = corners[i];
-      if (corner.strength < weakest) break;
-      if (used[i] || bucket(corner.x, corner.y) >= round) continue;
-      const Eigen::Vector2d point(corner.x, corner.y);
-      used[i] = 1;
-      if (EventsAround(image, corner.x, corner.y, options.patch_radius_px) < fewest_events) continue;
-      if (std::ranges::any_of(occupied, [&](const auto& o) { return (o - point).squaredNorm() < spacing2; })) continue;
-      ++bucket(corner.x, corner.y);
-      occupied.push_back(point);
-      found.push_back(point);
-    }
+  std::erase_if(corners, [&](const Corner& corner) {
+    return corner.strength < weakest ||
+           EventsAround(image, corner.x, corner.y, options.patch_radius_px) < fewest_events;
+  });
+  CornerSelection selection(image.cols, image.rows, taken);
+  for (const double spacing_px : {options.corner_spacing_px, options.corner_closest_px}) {
+    selection.Add(corners, static_cast<std::size_t>(std::max(count, 0)), spacing_px);
   }
-  return found;
+  return selection.found();
 }
 
 }  // namespace evo

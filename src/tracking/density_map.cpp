@@ -45,7 +45,7 @@ void DensityMap::Add(const DensityMap& other, float factor) {
   for (std::size_t i = 0; i < cells_.size(); ++i) cells_[i] += factor * other.cells_[i];
 }
 
-DensityMap DensityMap::Warped(const Eigen::Matrix2d& linear) const {
+DensityMap DensityMap::Warped(const Eigen::Matrix2d& linear, const Eigen::Vector2d& perspective) const {
   DensityMap warped(radius_, planes_);
   const Eigen::Matrix2f inverse = linear.inverse().cast<float>();
   const auto density = static_cast<float>(1.0 / std::abs(linear.determinant()));  // events per new cell
@@ -53,8 +53,9 @@ DensityMap DensityMap::Warped(const Eigen::Matrix2d& linear) const {
     float* target = warped.cells_.data() + p * side() * side();
     for (int r = 0; r < side(); ++r) {
       for (int c = 0; c < side(); ++c, ++target) {
-        const Eigen::Vector2f u =
+        const Eigen::Vector2f straight =
             inverse * Eigen::Vector2f(static_cast<float>(c - radius_), static_cast<float>(r - radius_));
+        const Eigen::Vector2f u = straight / (1.0f - perspective.cast<float>().dot(straight));
         const float column = u.x() + static_cast<float>(radius_);
         const float row = u.y() + static_cast<float>(radius_);
         const int c0 = static_cast<int>(column);
@@ -69,6 +70,17 @@ DensityMap DensityMap::Warped(const Eigen::Matrix2d& linear) const {
     }
   }
   return warped;
+}
+
+void AssociationField::WeighCentre() {
+  centre_.resize(static_cast<std::size_t>(side_ * side_));
+  for (int r = 0, i = 0; r < side_; ++r) {
+    for (int c = 0; c < side_; ++c, ++i) {
+      const double distance = std::hypot(r - radius_, c - radius_) / radius_;
+      const double weight = std::max(0.0, 1.0 - distance * distance);
+      centre_[i] = static_cast<float>(weight * weight);
+    }
+  }
 }
 
 void AssociationField::MakeKernel(double sigma_px) {
@@ -110,11 +122,15 @@ void AssociationField::Smooth(const float* plane) {
 void AssociationField::Build(const DensityMap& map, double sigma_px, double outlier_share) {
   radius_ = map.radius();
   side_ = map.side();
+  sigma_px_ = sigma_px;
   const int n = side_;
   width_ = (n + kBlock - 1) / kBlock * kBlock;
   MakeKernel(sigma_px);
   const auto cells = static_cast<std::size_t>(map.planes() * n * n);
-  if (table_.size() != cells) table_.assign(cells, Pull::Zero());  // the cells at the edge stay zero
+  if (table_.size() != cells) {
+    table_.assign(cells, Pull::Zero());  // the cells at the edge stay zero
+    WeighCentre();
+  }
   const double mean_density = map.Total() / (map.planes() * n * n);
   const auto stray = static_cast<float>(std::max(1e-12, outlier_share * mean_density));
   const auto half_variance = static_cast<float>(0.5 * sigma_px * sigma_px);
@@ -122,11 +138,12 @@ void AssociationField::Build(const DensityMap& map, double sigma_px, double outl
   for (int p = 0; p < map.planes(); ++p) {
     Smooth(map.plane(p));
     for (int r = 1; r + 1 < n; ++r) {
+      const float* centre = centre_.data() + r * n;
       const float* density = smooth_.data() + r * width_;
       float* pull = table_[(p * n + r) * n].data();
       for (int c = 1; c + 1 < n; ++c) {
         // The mean shift variance * gradient / density, times the probability density / (density + stray).
-        const float share = 1.0f / (density[c] + stray);
+        const float share = centre[c] / (density[c] + stray);
         const float weight = density[c] * share;
         const float limit = longest * weight;
         const float x = half_variance * share * (density[c + 1] - density[c - 1]);
@@ -134,7 +151,7 @@ void AssociationField::Build(const DensityMap& map, double sigma_px, double outl
         pull[4 * c] = weight;
         pull[4 * c + 1] = std::clamp(x, -limit, limit);
         pull[4 * c + 2] = std::clamp(y, -limit, limit);
-        pull[4 * c + 3] = 0.0f;
+        pull[4 * c + 3] = centre[c];
       }
     }
   }
@@ -164,6 +181,22 @@ Eigen::Matrix<double, 2, 3> AssociationField::OwnMoments(const DensityMap& map, 
   Eigen::Matrix<double, 2, 3> moments;
   moments << sum[1], sum_u[1], sum_v[1], sum[2], sum_u[2], sum_v[2];
   return moments / sum[0];
+}
+
+Eigen::Matrix2d AssociationField::Information(const DensityMap& map) const {
+  Eigen::Array4f sum = Eigen::Array4f::Zero();  // of the weight and of the pull's xx, xy, yy
+  const float* votes = map.plane(0);
+  for (std::size_t i = 0; i < table_.size(); ++i) {
+    const Pull& pull = table_[i];
+    if (!(pull[0] > 0.0f)) continue;
+    const float per_weight = 1.0f / pull[3];
+    sum += votes[i] * Pull(pull[3], per_weight * pull[1] * pull[1], per_weight * pull[1] * pull[2],
+                           per_weight * pull[2] * pull[2]);
+  }
+  if (!(sum[0] > 0.0f)) return Eigen::Matrix2d::Zero();
+  Eigen::Matrix2d information;
+  information << sum[1], sum[2], sum[2], sum[3];
+  return information / (sum[0] * std::pow(sigma_px_, 4));
 }
 
 }  // namespace evo

@@ -21,27 +21,7 @@ struct Moments {
   Correction pull = Correction::Zero();
   double weight = 0.0;
   double squares = 0.0;
-};
-
-/// Where the events lie in the template. In a loop of its own, which the compiler vectorises.
-struct TemplatePoints {
-  std::vector<float> u, v;  // px
-
-  void Update(const LocalEvents& events, const PatchMotion& motion) {
-    const Eigen::Matrix2f inverse = motion.linear.inverse().cast<float>();
-    const Eigen::Vector2f offset = motion.offset.cast<float>();
-    const Eigen::Vector2f flow = motion.flow.cast<float>();
-    u.resize(events.size());
-    v.resize(events.size());
-    float* const out_u = u.data();
-    float* const out_v = v.data();
-    for (std::size_t i = 0; i < events.size(); ++i) {
-      const float x = events.x[i] - offset.x() - flow.x() * events.dt[i];
-      const float y = events.y[i] - offset.y() - flow.y() * events.dt[i];
-      out_u[i] = inverse(0, 0) * x + inverse(0, 1) * y;
-      out_v[i] = inverse(1, 0) * x + inverse(1, 1) * y;
-    }
-  }
+  double all = 0.0;  // weight if no event were stray
 };
 
 Moments Expect(const LocalEvents& events, const AssociationField& field, int planes, const AlignmentOptions& options,
@@ -55,11 +35,12 @@ Moments Expect(const LocalEvents& events, const AssociationField& field, int pla
   const Row one(1.0f, 0.0f, 0.0f, 0.0f), in_window(0.0f, per_window, 0.0f, 0.0f);
   const Row in_width(0.0f, 0.0f, per_radius, 0.0f), in_height(0.0f, 0.0f, 0.0f, per_radius);
   Row n0 = Row::Zero(), n1 = Row::Zero(), n2 = Row::Zero(), n3 = Row::Zero(), x = Row::Zero(), y = Row::Zero();
-  float squares = 0.0f;
+  float squares = 0.0f, all = 0.0f;
   for (std::size_t i = 0; i < events.size(); ++i) {
     const float u = points.u[i];
     const float v = points.v[i];
     const AssociationField::Pull pull = field.At(u, v, planes == 2 && events.polarity[i] < 0 ? 1 : 0);
+    all += pull[3];
     if (!(pull[0] > 0.0f)) continue;
     const Row regressors = one + events.dt[i] * in_window + u * in_width + v * in_height;
     const Row weighted = pull[0] * regressors;
@@ -77,10 +58,46 @@ Moments Expect(const LocalEvents& events, const AssociationField& field, int pla
   moments.pull << x.matrix().cast<double>(), y.matrix().cast<double>();
   moments.weight = n0[0];
   moments.squares = squares;
+  moments.all = all;
   return moments;
 }
 
 }  // namespace
+
+void TemplatePoints::Update(const LocalEvents& events, const PatchMotion& motion) {
+  const Eigen::Matrix2f inverse = motion.linear.inverse().cast<float>();
+  const Eigen::Vector2f offset = motion.offset.cast<float>();
+  const Eigen::Vector2f flow = motion.flow.cast<float>();
+  const Eigen::Vector2f perspective = motion.perspective.cast<float>();
+  const Eigen::Matrix2f rate = motion.rate.cast<float>();
+  const Eigen::Vector2f bend = motion.bend.cast<float>();
+  u.resize(events.size());
+  v.resize(events.size());
+  float* const out_u = u.data();
+  float* const out_v = v.data();
+  // The compiler vectorises this loop.
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const float dt = events.dt[i];
+    const float x = events.x[i] - offset.x() - flow.x() * dt;
+    const float y = events.y[i] - offset.y() - flow.y() * dt;
+    const float bent = bend.x() * x + bend.y() * y;
+    const float x0 = x - dt * (rate(0, 0) * x + rate(0, 1) * y + bent * x);
+    const float y0 = y - dt * (rate(1, 0) * x + rate(1, 1) * y + bent * y);
+    const float a = inverse(0, 0) * x0 + inverse(0, 1) * y0;
+    const float b = inverse(1, 0) * x0 + inverse(1, 1) * y0;
+    const float nearer = 1.0f / (1.0f - perspective.x() * a - perspective.y() * b);
+    out_u[i] = a * nearer;
+    out_v[i] = b * nearer;
+  }
+}
+
+void Accumulate(const LocalEvents& events, const PatchMotion& motion, DensityMap* map) {
+  thread_local TemplatePoints points;
+  points.Update(events, motion);
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    map->Vote(points.u[i], points.v[i], map->PlaneOf(events.polarity[i]), 1.0f);
+  }
+}
 
 AlignmentQuality AlignToTemplate(const LocalEvents& events, const AssociationField& field, int planes,
                                  const AlignmentOptions& options, bool with_linear, PatchMotion* motion) {
@@ -91,7 +108,7 @@ AlignmentQuality AlignToTemplate(const LocalEvents& events, const AssociationFie
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     Moments moments = Expect(events, field, planes, options, *motion);
     if (!(moments.weight > 1.0)) return {};
-    quality.inlier_share = moments.weight / static_cast<double>(events.size());
+    quality.inlier_share = moments.weight / moments.all;
     quality.residual_px = std::sqrt(moments.squares / moments.weight);
     const auto& own = options.own_moments;
     moments.pull.row(0) -= moments.weight * own.col(0).transpose();

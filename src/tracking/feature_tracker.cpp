@@ -4,35 +4,25 @@
 #include <algorithm>
 #include <cmath>
 
-#include "evo/tracking/corner_detector.hpp"
-
 namespace evo {
 
 namespace {
 
-constexpr int kTemplateMarginPx = 4;  // the template is larger than the patch, for events that stick out
 constexpr int kCoarseIterations = 6;
+constexpr int kNewbornFrames = 5;      // until then a feature has to prove itself
+constexpr double kSlopeGain = 0.1;     // share of what one frame tells about the slope of a feature's plane
+constexpr double kSteepest = 1e-3;     // such a slope for a flow of 1 px/s, 1/px^2
 constexpr double kRebaseScale = 1.25;  // re-sample the template when the patch has grown or shrunk this much
-
-void Vote(const LocalEvents& events, const PatchMotion& motion, DensityMap* map) {
-  const Eigen::Matrix2f inverse = motion.linear.inverse().cast<float>();
-  const Eigen::Vector2f offset = motion.offset.cast<float>();
-  const Eigen::Vector2f flow = motion.flow.cast<float>();
-  for (std::size_t i = 0; i < events.size(); ++i) {
-    const Eigen::Vector2f u = inverse * Eigen::Vector2f(events.x[i] - offset.x() - flow.x() * events.dt[i],
-                                                        events.y[i] - offset.y() - flow.y() * events.dt[i]);
-    map->Vote(u.x(), u.y(), map->PlaneOf(events.polarity[i]), 1.0f);
-  }
-}
 
 }  // namespace
 
-FeatureTracker::FeatureTracker(int width, int height, const TrackerOptions& options, ThreadPool* pool)
+FeatureTracker::FeatureTracker(const Camera& camera, const TrackerOptions& options, ThreadPool* pool)
     : options_(options),
-      width_(width),
-      height_(height),
+      width_(camera.width()),
+      height_(camera.height()),
       pool_(pool),
-      flow_field_(width, height, options),
+      ego_motion_(camera),
+      flow_field_(width_, height_, options),
       refill_(options) {}
 
 void FeatureTracker::Process(const EventHistory& history, TimeNs t) {
@@ -48,6 +38,9 @@ void FeatureTracker::Process(const EventHistory& history, TimeNs t) {
     }
     features_.erase(features_.begin() + static_cast<std::ptrdiff_t>(kept), features_.end());
   }
+  std::vector<FlowSample> samples;
+  for (const auto& feature : features_) samples.push_back({feature.position, feature.flow});
+  if (options_.ego_motion) ego_motion_.Update(samples);
   last_ = t;
   detected_ = refill_.IsDue(features_.size());
   if (detected_) Refill(history, t);
@@ -61,6 +54,12 @@ Tracks FeatureTracker::Observations() const {
   return observations;
 }
 
+std::vector<float> FeatureTracker::HalfWindowsS() const {
+  std::vector<float> half_windows;
+  for (const auto& feature : features_) half_windows.push_back(static_cast<float>(ToSeconds(feature.half_window)));
+  return half_windows;
+}
+
 bool FeatureTracker::Track(const EventHistory& history, TimeNs t, TrackedFeature* feature) const {
   if (!Align(history, t, feature)) return false;
   ++feature->frames;
@@ -69,38 +68,68 @@ bool FeatureTracker::Track(const EventHistory& history, TimeNs t, TrackedFeature
   return p.x() >= b && p.y() >= b && p.x() <= width_ - 1 - b && p.y() <= height_ - 1 - b;
 }
 
+PatchMotion FeatureTracker::Predict(const TrackedFeature& feature, double step_s, Eigen::Vector2d* position) const {
+  const PatchFlow patch = ego_motion_.At({feature.position, feature.flow}, feature.slope);
+  PatchMotion motion;
+  motion.flow = feature.flow + step_s * patch.acceleration;
+  motion.linear = (Eigen::Matrix2d::Identity() + step_s * patch.rate) * feature.linear;
+  motion.perspective = feature.perspective - step_s * feature.linear.transpose() * patch.bend;
+  motion.rate = patch.rate;
+  motion.bend = patch.bend;
+  *position = feature.position + 0.5 * step_s * (feature.flow + motion.flow);
+  return motion;
+}
+
 bool FeatureTracker::Align(const EventHistory& history, TimeNs t, TrackedFeature* feature) const {
   thread_local LocalEvents events;
-  const Eigen::Vector2d predicted = feature->position + ToSeconds(t - *last_) * feature->flow;
-  const TimeNs half_window = HalfWindow(feature->flow, options_.window_motion_px, options_);
-  history.Gather({t, predicted.x(), predicted.y(), feature->flow.x(), feature->flow.y(),
-                  static_cast<double>(options_.patch_radius_px), half_window},
-                 &events);
-  if (events.size() < static_cast<std::size_t>(options_.fewest_events)) return false;
+  const double step_s = ToSeconds(t - *last_);
+  Eigen::Vector2d position;
+  const PatchMotion start = Predict(*feature, step_s, &position);
+  const auto gather = [&] {
+    history.Gather({t, position.x(), position.y(), start.flow.x(), start.flow.y(),
+                    static_cast<double>(options_.patch_radius_px), feature->half_window},
+                   &events);
+    return events.size();
+  };
+  feature->half_window = HalfWindow(start.flow, options_.window_motion_px, options_);
+  if (gather() < static_cast<std::size_t>(options_.fewest_events)) {
+    feature->half_window = std::min(2 * feature->half_window, FromSeconds(0.5 * options_.longest_window_s));
+    const int fewest = feature->frames < kNewbornFrames ? options_.fewest_events : options_.fewest_events_alive;
+    if (gather() < static_cast<std::size_t>(fewest)) return false;
+  }
   events.Thin(static_cast<std::size_t>(options_.most_events));
 
-  PatchMotion motion{Eigen::Vector2d::Zero(), feature->flow, feature->linear};
-  if (!Fit(events, *feature, half_window, false, &motion)) {
+  PatchMotion motion = start;
+  if (!Fit(events, *feature, false, &motion)) {
     // A jolt: the prediction may lie beyond the fine association's reach.
-    motion = {Eigen::Vector2d::Zero(), feature->flow, feature->linear};
-    if (!Fit(events, *feature, half_window, true, &motion)) return false;
+    motion = start;
+    if (!Fit(events, *feature, true, &motion)) return false;
   }
-  feature->position = predicted + motion.offset;
+  feature->position = position + motion.offset;
   feature->flow = motion.flow;
   feature->linear = motion.linear;
+  feature->perspective = motion.perspective;
+  LearnSlope((motion.linear * start.linear.inverse() - Eigen::Matrix2d::Identity()) / step_s, feature);
   UpdateTemplate(events, motion, feature);
   return true;
 }
 
-bool FeatureTracker::Fit(const LocalEvents& events, const TrackedFeature& feature, TimeNs half_window,
-                         bool coarse_first, PatchMotion* motion) const {
+void FeatureTracker::LearnSlope(const Eigen::Matrix2d& unexpected_rate, TrackedFeature* feature) const {
+  feature->slope += kSlopeGain * ego_motion_.SlopeOf(feature->position, unexpected_rate);
+  const double steepest = kSteepest * feature->flow.norm();
+  const double slope = feature->slope.norm();
+  if (slope > steepest) feature->slope *= steepest / slope;
+}
+
+bool FeatureTracker::Fit(const LocalEvents& events, const TrackedFeature& feature, bool coarse_first,
+                         PatchMotion* motion) const {
   thread_local AssociationField field;
   const auto align = [&](double sigma_px, int iterations, bool with_linear) {
     const auto radius = static_cast<double>(options_.patch_radius_px);
     field.Build(feature.events, sigma_px, options_.outlier_share);
     return AlignToTemplate(events, field, planes(),
-                           {iterations, radius, ToSeconds(half_window), options_.flow_prior, options_.affine_prior,
-                            field.OwnMoments(feature.events, motion->linear, radius)},
+                           {iterations, radius, ToSeconds(feature.half_window), options_.flow_prior,
+                            options_.affine_prior, field.OwnMoments(feature.events, motion->linear, radius)},
                            with_linear, motion);
   };
   if (coarse_first) align(options_.coarse_sigma_px, kCoarseIterations, false);
@@ -121,56 +150,16 @@ void FeatureTracker::UpdateTemplate(const LocalEvents& events, const PatchMotion
     window.emplace(feature->events.radius(), feature->events.planes());
   }
   window->Clear();
-  Vote(events, motion, &*window);
+  Accumulate(events, motion, &*window);
   // Windows weigh the same however many events they hold.
   feature->events.Add(*window, static_cast<float>(gain / std::max(1.0, window->Total())));
   const double growth = std::sqrt(std::abs(feature->linear.determinant()));
   if (growth > kRebaseScale || growth < 1.0 / kRebaseScale) {
-    feature->events = feature->events.Warped(feature->linear);
+    feature->events = feature->events.Warped(feature->linear, feature->perspective);
+    feature->perspective.setZero();
     feature->scale *= growth;
     feature->linear.setIdentity();
   }
-}
-
-void FeatureTracker::Refill(const EventHistory& history, TimeNs t) {
-  std::vector<FlowSample> samples;
-  std::vector<Eigen::Vector2d> taken;
-  for (const auto& feature : features_) {
-    samples.push_back({feature.position, feature.flow});
-    taken.push_back(feature.position);
-  }
-  flow_field_.Update(history, t, samples, pool_);
-  const cv::Mat image = CorrectedEventImage(history, t, flow_field_, options_.corner_window_motion_px, options_, pool_);
-  const double fewest_events = options_.fewest_events * options_.corner_window_motion_px / options_.window_motion_px;
-  const int missing = options_.features - static_cast<int>(features_.size());
-  const auto corners = DetectCorners(image, taken, missing, fewest_events, options_, pool_);
-  std::vector<std::optional<TrackedFeature>> born(corners.size());
-  pool_->ForEach(corners.size(), [&](std::size_t i) { born[i] = Birth(history, t, corners[i]); });
-  for (auto& feature : born) {
-    if (!feature) continue;
-    feature->id = next_id_++;
-    features_.push_back(std::move(*feature));
-  }
-}
-
-std::optional<TrackedFeature> FeatureTracker::Birth(const EventHistory& history, TimeNs t,
-                                                    const Eigen::Vector2d& position) const {
-  Eigen::Vector2d flow = flow_field_.At(position.x(), position.y());
-  if (!EstimateFlow(history, t, position.x(), position.y(), options_, &flow)) return std::nullopt;
-  thread_local LocalEvents events;
-  const TimeNs half_window = HalfWindow(flow, options_.window_motion_px, options_);
-  history.Gather(
-      {t, position.x(), position.y(), flow.x(), flow.y(), static_cast<double>(options_.patch_radius_px), half_window},
-      &events);
-  if (events.size() < static_cast<std::size_t>(options_.fewest_events)) return std::nullopt;
-  TrackedFeature feature{0,    position,
-                         flow, Eigen::Matrix2d::Identity(),
-                         1.0,  DensityMap(options_.patch_radius_px + kTemplateMarginPx, planes()),
-                         1};
-  Vote(events, {Eigen::Vector2d::Zero(), flow, Eigen::Matrix2d::Identity()}, &feature.events);
-  if (feature.events.EffectiveCells() < options_.fewest_cells) return std::nullopt;
-  feature.events.Scale(static_cast<float>(1.0 / feature.events.Total()));
-  return feature;
 }
 
 }  // namespace evo

@@ -14,6 +14,7 @@ namespace {
 constexpr int kLevels = 3;            // below the full resolution
 constexpr double kSmoothingPx = 1.0;  // events are grainy
 constexpr double kWhite = 6.0;        // events in a pixel
+constexpr double kBorderPx = 6.0;
 constexpr std::size_t kFeaturesAJob = 16;
 
 /// The 8-bit image that KLT wants. The square root evens out pixels that fire often and pixels that fire once.
@@ -33,7 +34,11 @@ KltTracker::KltTracker(int width, int height, const TrackerOptions& options, Thr
       height_(height),
       patch_(2 * options.klt.patch_radius_px + 1, 2 * options.klt.patch_radius_px + 1),
       pool_(pool),
-      refill_(options) {}
+      refill_(options) {
+  // Its larger patches would overlap too much, or stick out too far.
+  options_.corner_closest_px = options_.corner_spacing_px;
+  options_.border_px = std::max(options_.border_px, kBorderPx);
+}
 
 cv::Mat KltTracker::EventImage(const EventHistory& history, TimeNs t) const {
   cv::Mat image = cv::Mat::zeros(history.height(), history.width(), CV_32F);

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "evo/core/error.hpp"
+#include "evo/tracking/camera_shake.hpp"
 #include "evo/tracking/tracker.hpp"
 
 namespace evo {
@@ -22,15 +23,16 @@ void DropLoneObservations(Tracks* tracks) {
 
 }  // namespace
 
-TrackingResult TrackEvents(EventReader* reader, int width, int height, const TrackerOptions& options, ThreadPool* pool,
+TrackingResult TrackEvents(EventReader* reader, const Camera& camera, const TrackerOptions& options, ThreadPool* pool,
                            const std::function<void(double)>& progress,
                            const std::function<void(const TrackingView&)>& observe) {
   // Its variants for newer processors round differently: the tracks would depend on the machine.
   cv::setUseOptimized(false);
   cv::setNumThreads(1);  // the pool's threads are all that were asked for
-  EventHistory history(width, height);
-  const std::unique_ptr<Tracker> tracker = MakeTracker(width, height, options, pool);
+  EventHistory history(camera.width(), camera.height());
+  const std::unique_ptr<Tracker> tracker = MakeTracker(camera, options, pool);
   TrackingResult result;
+  std::vector<float> half_windows;  // of the observations
   const TimeNs interval = FromSeconds(options.frame_interval_s);
   const TimeNs half_window = FromSeconds(0.5 * options.longest_window_s);
 
@@ -42,6 +44,8 @@ TrackingResult TrackEvents(EventReader* reader, int width, int height, const Tra
     if (tracker->detected()) ++result.key_frames;
     const Tracks observations = tracker->Observations();
     result.tracks.insert(result.tracks.end(), observations.begin(), observations.end());
+    const auto windows = tracker->HalfWindowsS();
+    half_windows.insert(half_windows.end(), windows.begin(), windows.end());
     if (observe) observe({history, result.tracks, t});
   };
 
@@ -79,6 +83,7 @@ TrackingResult TrackEvents(EventReader* reader, int width, int height, const Tra
         ErrorKind::kNothingToDo,
         "the events span less than two event frames; choose a longer interval or a smaller tracker.frame_interval_s");
   }
+  if (options.restore_shake && options.method == "em") RestoreShake(camera, half_windows, pool, &result.tracks);
   DropLoneObservations(&result.tracks);
   return result;
 }

@@ -6,9 +6,9 @@
 
 namespace evo {
 
-std::unique_ptr<Tracker> MakeTracker(int width, int height, const TrackerOptions& options, ThreadPool* pool) {
-  if (options.method == "klt") return std::make_unique<KltTracker>(width, height, options, pool);
-  return std::make_unique<FeatureTracker>(width, height, options, pool);
+std::unique_ptr<Tracker> MakeTracker(const Camera& camera, const TrackerOptions& options, ThreadPool* pool) {
+  if (options.method == "klt") return std::make_unique<KltTracker>(camera.width(), camera.height(), options, pool);
+  return std::make_unique<FeatureTracker>(camera, options, pool);
 }
 
 std::string DescribePositions(const TrackerOptions& options) {

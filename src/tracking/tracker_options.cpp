@@ -16,7 +16,9 @@ void Register(Parameters& parameters, TrackerOptions& o) {
   parameters.Add("tracker.window_motion_px", &o.window_motion_px, 0.5, 20.0, "motion within a feature's window (px)");
   parameters.Add("tracker.shortest_window_s", &o.shortest_window_s, 0.0005, 1.0, "of a feature's events (s)");
   parameters.Add("tracker.longest_window_s", &o.longest_window_s, 0.001, 2.0, "of a feature's events (s)");
-  parameters.Add("tracker.fewest_events", &o.fewest_events, 10, 10000, "in a patch's window");
+  parameters.Add("tracker.fewest_events", &o.fewest_events, 10, 10000, "in a new feature's window");
+  parameters.Add("tracker.fewest_events_alive", &o.fewest_events_alive, 5, 10000,
+                 "lost with fewer in a doubled window");
   parameters.Add("tracker.most_events", &o.most_events, 50, 1000000, "in a patch's window: of more, an even sample");
   parameters.Add("tracker.flow_sigma_px", &o.flow_sigma_px, 0.3, 10.0, "soft association, first flow (px)");
   parameters.Add("tracker.coarse_sigma_px", &o.coarse_sigma_px, 0.3, 10.0, "soft association, first alignment (px)");
@@ -25,8 +27,11 @@ void Register(Parameters& parameters, TrackerOptions& o) {
   parameters.Add("tracker.outlier_share", &o.outlier_share, 0.0, 10.0, "density of stray events over the mean density");
   parameters.Add("tracker.iterations", &o.iterations, 1, 200, "of each expectation maximisation, at most");
   parameters.Add("tracker.flow_prior", &o.flow_prior, 0.0, 1e6, "weight of the predicted flow (events)");
-  parameters.Add("tracker.affine_prior", &o.affine_prior, 0.0, 1e6, "weight of the previous affine shape (events)");
+  parameters.Add("tracker.affine_prior", &o.affine_prior, 0.0, 1e6, "weight of the predicted affine shape (events)");
   parameters.Add("tracker.template_gain", &o.template_gain, 0.0, 1.0, "share of the newest window in a template");
+  parameters.Add("tracker.ego_motion", &o.ego_motion, "predict patches by the camera's own motion");
+  parameters.Add("tracker.restore_shake", &o.restore_shake,
+                 "give back what windows smooth away when the camera shakes");
   parameters.Add("tracker.use_polarity", &o.use_polarity, "associate events of equal sign only");
   parameters.Add("tracker.fewest_inliers", &o.fewest_inliers, 0.0, 1.0, "share of events that the template explains");
   parameters.Add("tracker.largest_residual_px", &o.largest_residual_px, 0.1, 20.0,
@@ -35,8 +40,12 @@ void Register(Parameters& parameters, TrackerOptions& o) {
   parameters.Add("tracker.largest_scale", &o.largest_scale, 1.1, 100.0, "of a patch against its first window");
   parameters.Add("tracker.border_px", &o.border_px, 1.0, 100.0, "give features up this near to the sensor's edge (px)");
   parameters.Add("tracker.corner_spacing_px", &o.corner_spacing_px, 1.0, 100.0, "between two features (px)");
+  parameters.Add("tracker.corner_closest_px", &o.corner_closest_px, 1.0, 100.0,
+                 "the same where that leaves room for too few (px)");
   parameters.Add("tracker.corner_share", &o.corner_share, 0.0, 1.0, "weakest corner as a share of a strong one");
   parameters.Add("tracker.corner_window_motion_px", &o.corner_window_motion_px, 0.5, 20.0, "in the corner image (px)");
+  parameters.Add("tracker.smallest_information", &o.smallest_information, 0.0, 2.0,
+                 "of an event about a new feature's position, in the worst direction, as a share of the usual");
   parameters.Add("tracker.fewest_cells", &o.fewest_cells, 0.0, 1000.0, "that a template's events fill (px)");
   parameters.Add("tracker.klt.events", &o.klt.events, 100, 1000000, "newest events in an image, at most");
   parameters.Add("tracker.klt.longest_window_s", &o.klt.longest_window_s, 0.001, 2.0, "and none older than this (s)");

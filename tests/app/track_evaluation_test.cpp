@@ -88,7 +88,7 @@ class TrackEvaluationTest : public EvoRunTest {
 
 TEST_F(TrackEvaluationTest, OurTracksOfTheStreetKeepTheirQuality) {
   const auto quality = JudgeTracks("street", "street_gt.hdf5", "camchain-imucam-street.yaml");
-  ExpectQuality(quality, {.judged = 110.0, .track_error_px = 1.0, .outlier_share = 0.02, .age_share = 0.41});
+  ExpectQuality(quality, {.judged = 110.0, .track_error_px = 0.85, .outlier_share = 0.02, .age_share = 0.55});
   // The tables of lifetimes agree where every frame has tracks.
   const std::string lifetimes = ReadFile(folder / "quality" / "lifetime.csv");
   const std::string of_track = ReadFile(folder / "tracks" / "lifetime.csv");
@@ -99,12 +99,12 @@ TEST_F(TrackEvaluationTest, OurTracksOfTheStreetKeepTheirQuality) {
 
 TEST_F(TrackEvaluationTest, OurTracksOfTheNightKeepTheirQuality) {
   ExpectQuality(JudgeTracks("night", "night_gt.hdf5", "camchain-imucam-night.yaml"),
-                {.judged = 80.0, .track_error_px = 1.3, .outlier_share = 0.04, .age_share = 0.47});
+                {.judged = 80.0, .track_error_px = 0.95, .outlier_share = 0.07, .age_share = 0.55});
 }
 
 TEST_F(TrackEvaluationTest, OurTracksOfTheHandheldRoomKeepTheirQuality) {
   ExpectQuality(JudgeTracks("handheld", "depth_gt.hdf5", "calib.txt"),
-                {.judged = 60.0, .track_error_px = 0.6, .outlier_share = 0.02, .age_share = 0.6});
+                {.judged = 60.0, .track_error_px = 0.45, .outlier_share = 0.02, .age_share = 0.8});
 }
 
 TEST_F(TrackEvaluationTest, DepthMapsGiveTheErrorAndTheTrueAge) {

@@ -40,6 +40,25 @@ TEST(DensityMap, WarpMovesCellsAndKeepsTheNumberOfEvents) {
   EXPECT_NEAR(y / warped.Total(), 3.0, 0.1);
 }
 
+TEST(DensityMap, WarpFollowsThePerspective) {
+  DensityMap map(12, 1);
+  for (int i = -2; i <= 2; ++i) {
+    for (int j = -2; j <= 2; ++j) map.Vote(4.0f + 0.5f * i, -6.0f + 0.5f * j, 0, 1.0f);
+  }
+  const Eigen::Vector2d perspective(0.02, -0.03);
+  const DensityMap warped = map.Warped(Eigen::Matrix2d::Identity(), perspective);
+  const Eigen::Vector2d expected = Eigen::Vector2d(4, -6) / (1.0 + perspective.dot(Eigen::Vector2d(4, -6)));
+  double x = 0, y = 0;
+  for (int r = 0; r < warped.side(); ++r) {
+    for (int c = 0; c < warped.side(); ++c) {
+      x += warped.plane(0)[r * warped.side() + c] * (c - 12) / warped.Total();
+      y += warped.plane(0)[r * warped.side() + c] * (r - 12) / warped.Total();
+    }
+  }
+  EXPECT_NEAR(x, expected.x(), 0.15);
+  EXPECT_NEAR(y, expected.y(), 0.15);
+}
+
 TEST(DensityMap, EffectiveCellsCountsHowFarEventsSpread) {
   DensityMap map(6, 1);
   for (int i = 0; i < 100; ++i) map.Vote(0.0f, 0.0f, 0, 1.0f);
@@ -63,6 +82,41 @@ TEST(AssociationField, MeanShiftOfOnePointLeadsBackToIt) {
   }
   EXPECT_LT(field.At(-12.0f, 12.0f, 0)[0], 0.01f);
   EXPECT_EQ(field.At(40.0f, 0.0f, 0)[0], 0.0f);
+}
+
+TEST(AssociationField, WeighsTheCentreMost) {
+  DensityMap map(12, 1);
+  for (int x = -11; x <= 11; ++x) map.Vote(static_cast<float>(x), 0.0f, 0, 1.0f);
+  AssociationField field;
+  field.Build(map, 1.0, 0.0);
+  EXPECT_FLOAT_EQ(field.At(0.0f, 0.0f, 0)[3], 1.0f);
+  EXPECT_NEAR(field.At(6.0f, 0.0f, 0)[3], 0.75 * 0.75, 1e-5);
+  EXPECT_NEAR(field.At(6.0f, 0.0f, 0)[0], 0.75 * 0.75, 1e-3);  // no stray events: the weight alone
+  EXPECT_NEAR(field.At(11.9f, 0.0f, 0)[3], 0.0f, 0.005f);
+}
+
+TEST(AssociationField, InformationIsThatOfABlurredLine) {
+  DensityMap map(12, 1);
+  for (float x = -11.0f; x <= 11.0f; x += 0.25f) {
+    for (float y = -4.0f; y <= 4.0f; y += 0.1f) map.Vote(x, y, 0, std::exp(-0.5f * y * y));
+  }
+  AssociationField field;
+  field.Build(map, 1.0, 1e-6);
+  // Across the line, events of variance 1 + 1/6 (of the cells) in a density of 1 px^2 more; slopes are differences
+  // over two cells.
+  const double events = 1.0 + 1.0 / 6.0;
+  double expected = 0.0, total = 0.0;
+  for (int y = -8; y <= 8; ++y) {
+    const auto density = [&](int at) { return std::exp(-0.5 * at * at / (events + 1.0)); };
+    const double weight = std::exp(-0.5 * y * y / events);
+    const double slope = 0.5 * (density(y + 1) - density(y - 1)) / density(y);
+    expected += weight * slope * slope;
+    total += weight;
+  }
+  const Eigen::Matrix2d information = field.Information(map);
+  EXPECT_NEAR(information(1, 1), expected / total, 0.03);
+  EXPECT_NEAR(information(0, 0), 0.0, 0.01);  // it may slide along itself
+  EXPECT_NEAR(information(0, 1), 0.0, 1e-3);
 }
 
 TEST(AssociationField, KeepsPolaritiesApart) {

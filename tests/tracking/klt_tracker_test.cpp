@@ -32,7 +32,7 @@ TrackerOptions KltWith(int events, double longest_window_s) {
 TrackingResult TrackAll(const EventColumns& events, const TrackerOptions& options, int threads = 1) {
   MemoryReader reader(events);
   ThreadPool pool(threads);
-  return TrackEvents(&reader, 120, 90, options, &pool, {});
+  return TrackEvents(&reader, evo::testing::SceneCamera(), options, &pool, {});
 }
 
 std::map<std::int64_t, std::vector<TrackObservation>> ById(const Tracks& tracks) {

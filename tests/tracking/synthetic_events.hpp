@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "evo/events/event_columns.hpp"
+#include "evo/geometry/camera.hpp"
 #include "evo/io/event_reader.hpp"
 
 namespace evo::testing {
@@ -63,6 +64,17 @@ struct CrossScene {
     return columns;
   }
 };
+
+/// A camera of the scene's size, with a lens so long that whatever moves across it moves as a whole.
+inline Camera SceneCamera() {
+  Calibration calibration;
+  calibration.width = 120;
+  calibration.height = 90;
+  calibration.fx = calibration.fy = 1000.0;
+  calibration.cx = 60.0;
+  calibration.cy = 45.0;
+  return Camera(calibration);
+}
 
 /// Events from memory, in blocks.
 class MemoryReader : public EventReader {

@@ -18,7 +18,8 @@ cv::Mat CorrectedEventImage(const EventHistory& history, TimeNs t, const FlowFie
                             const TrackerOptions& options, ThreadPool* pool);
 
 /// Harris corners of a corrected event image, strongest first, spread over the image: at most `count`, none nearer than
-/// the options' spacing to another or to a point of `taken`, each with `fewest_events` in its patch.
+/// the options' spacing to another or to a point of `taken`, or where those are too few the closest one, each with
+/// `fewest_events` in its patch.
 std::vector<Eigen::Vector2d> DetectCorners(const cv::Mat& image, const std::vector<Eigen::Vector2d>& taken, int count,
                                            double fewest_events, const TrackerOptions& options, ThreadPool* pool);
 

@@ -41,8 +41,8 @@ class DensityMap {
     cell[side()] += weight * (1.0f - fx) * fy;
     cell[side() + 1] += weight * fx * fy;
   }
-  /// The same events seen in other coordinates: a cell at u moves to `linear` * u.
-  DensityMap Warped(const Eigen::Matrix2d& linear) const;
+  /// The same events seen in other coordinates: a cell at u moves to `linear` * u / (1 + `perspective` . u).
+  DensityMap Warped(const Eigen::Matrix2d& linear, const Eigen::Vector2d& perspective = Eigen::Vector2d::Zero()) const;
 
  private:
   int radius_;
@@ -57,7 +57,8 @@ class DensityMap {
 class AssociationField {
  public:
   /// What an event at some place is pulled by: its probability of not being stray; that times the way to the expected
-  /// partner in x and in y (px); nothing.
+  /// partner in x and in y (px); one. All four times a weight that falls from 1 at the centre to 0 at the map's radius,
+  /// (1 - r^2)^2: what lies farther out is more often of another depth, and bends more.
   using Pull = Eigen::Array4f;
 
   /// `outlier_share`: D0 as a share of the map's mean density.
@@ -83,17 +84,25 @@ class AssociationField {
   Eigen::Matrix<double, 2, 3> OwnMoments(const DensityMap& map, const Eigen::Matrix2d& linear,
                                          double patch_radius_px) const;
 
+  /// What one event of the map tells about where the pattern is, 1/px^2: the mean of grad D grad D^T / D^2, the Fisher
+  /// information of the density. Small along a direction in which the pattern may slide (the aperture problem), and
+  /// where it is blurred.
+  Eigen::Matrix2d Information(const DensityMap& map) const;
+
  private:
   void MakeKernel(double sigma_px);
+  void WeighCentre();
   /// One row: the sum of kernel_[|i|] * in[c + i * step].
   void Convolve(const float* in, std::ptrdiff_t step, float* out) const;
   void Smooth(const float* plane);
 
   int radius_ = 0;
   int side_ = 0;
+  double sigma_px_ = 1.0;
   std::vector<Pull> table_;  // per plane and cell
   int width_ = 0;            // of a row below: side_ rounded up to whole blocks
   std::vector<float> kernel_, row_, rows_, smooth_;
+  std::vector<float> centre_;  // weight of each cell
 };
 
 }  // namespace evo

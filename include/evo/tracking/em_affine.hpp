@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "evo/events/event_history.hpp"
 #include "evo/tracking/density_map.hpp"
@@ -8,12 +9,26 @@
 namespace evo {
 
 /// Where and how a template lies in the sensor around a reference instant: the template's point u appears at
-/// x = offset + flow * dt + linear * u, relative to the centre for which the events were gathered.
+/// x = offset + flow * dt + y + (rate * y + (bend . y) y) * dt with y = linear * u / (1 + perspective . u), relative to
+/// the centre for which the events were gathered. Offset, flow and linear are what an alignment finds.
 struct PatchMotion {
   Eigen::Vector2d offset = Eigen::Vector2d::Zero();  ///< px
   Eigen::Vector2d flow = Eigen::Vector2d::Zero();    ///< px/s
   Eigen::Matrix2d linear = Eigen::Matrix2d::Identity();
+  Eigen::Vector2d perspective = Eigen::Vector2d::Zero();  ///< 1/px
+  Eigen::Matrix2d rate = Eigen::Matrix2d::Zero();         ///< 1/s
+  Eigen::Vector2d bend = Eigen::Vector2d::Zero();         ///< 1/(px s)
 };
+
+/// Where the events lie in the template.
+struct TemplatePoints {
+  std::vector<float> u, v;  ///< px
+
+  void Update(const LocalEvents& events, const PatchMotion& motion);
+};
+
+/// Adds the events to `map`, where they lie in the template.
+void Accumulate(const LocalEvents& events, const PatchMotion& motion, DensityMap* map);
 
 struct AlignmentOptions {
   int iterations = 20;

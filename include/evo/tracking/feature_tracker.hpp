@@ -8,6 +8,7 @@
 #include "evo/core/parallel.hpp"
 #include "evo/events/event_history.hpp"
 #include "evo/tracking/density_map.hpp"
+#include "evo/tracking/ego_motion.hpp"
 #include "evo/tracking/em_affine.hpp"
 #include "evo/tracking/flow_field.hpp"
 #include "evo/tracking/tracker.hpp"
@@ -17,44 +18,58 @@ namespace evo {
 /// A live feature: a template of events and where it is now.
 struct TrackedFeature {
   std::int64_t id = 0;
-  Eigen::Vector2d position;                              ///< px, at the stamp of the last event frame
-  Eigen::Vector2d flow;                                  ///< px/s
-  Eigen::Matrix2d linear = Eigen::Matrix2d::Identity();  ///< template to sensor
-  double scale = 1.0;                                    ///< of the patch against its first window
-  DensityMap events;                                     ///< the template
-  int frames = 1;                                        ///< lifetime so far
+  Eigen::Vector2d position;                               ///< px, at the stamp of the last event frame
+  Eigen::Vector2d flow;                                   ///< px/s
+  Eigen::Matrix2d linear = Eigen::Matrix2d::Identity();   ///< template to sensor
+  Eigen::Vector2d perspective = Eigen::Vector2d::Zero();  ///< of the same, see PatchMotion
+  Eigen::Vector2d slope = Eigen::Vector2d::Zero();        ///< of its plane, see EgoMotion::At
+  double scale = 1.0;                                     ///< of the patch against its first window
+  DensityMap events;                                      ///< the template
+  double information = 0.0;                               ///< see AssociationField, in the worst direction, at birth
+  int frames = 1;                                         ///< lifetime so far
+  TimeNs half_window = 0;                                 ///< of the events behind the position
 };
 
 /// Tracks features by expectation maximisation. The positions reported are those at the very instant of the event
 /// frame, whatever the window of each feature.
 class FeatureTracker : public Tracker {
  public:
-  FeatureTracker(int width, int height, const TrackerOptions& options, ThreadPool* pool);
+  FeatureTracker(const Camera& camera, const TrackerOptions& options, ThreadPool* pool);
 
   void Process(const EventHistory& history, TimeNs t) override;
   TimeNs before() const override { return FromSeconds(0.5 * options_.longest_window_s); }
   TimeNs after() const override { return before(); }
   Tracks Observations() const override;
+  std::vector<float> HalfWindowsS() const override;
   bool detected() const override { return detected_; }
 
  private:
   /// False if the feature is lost.
   bool Track(const EventHistory& history, TimeNs t, TrackedFeature* feature) const;
+  /// How a feature probably lies in the sensor `step_s` after the last frame, relative to the `position` returned.
+  PatchMotion Predict(const TrackedFeature& feature, double step_s, Eigen::Vector2d* position) const;
   bool Align(const EventHistory& history, TimeNs t, TrackedFeature* feature) const;
   /// Aligns `events` to the feature's template from `motion`; false if they do not fit it.
-  bool Fit(const LocalEvents& events, const TrackedFeature& feature, TimeNs half_window, bool coarse_first,
-           PatchMotion* motion) const;
-  void Refill(const EventHistory& history, TimeNs t);
-  std::optional<TrackedFeature> Birth(const EventHistory& history, TimeNs t, const Eigen::Vector2d& position) const;
+  bool Fit(const LocalEvents& events, const TrackedFeature& feature, bool coarse_first, PatchMotion* motion) const;
+  /// `unexpected_rate`: by how much the patch changed faster than its plane's slope made expect, 1/s.
+  void LearnSlope(const Eigen::Matrix2d& unexpected_rate, TrackedFeature* feature) const;
   void UpdateTemplate(const LocalEvents& events, const PatchMotion& motion, TrackedFeature* feature) const;
+
+  // In feature_birth.cpp.
+  void Refill(const EventHistory& history, TimeNs t);
+  void LearnUsualInformation(const std::vector<TrackedFeature>& born);
+  std::optional<TrackedFeature> Birth(const EventHistory& history, TimeNs t, const Eigen::Vector2d& position) const;
+  Eigen::Vector2d NeighbouringSlope(const Eigen::Vector2d& position) const;
   int planes() const { return options_.use_polarity ? 2 : 1; }
 
   TrackerOptions options_;
   int width_;
   int height_;
   ThreadPool* pool_;
+  EgoMotion ego_motion_;
   FlowField flow_field_;
   RefillPolicy refill_;
+  double usual_information_ = 0.0;  // of features at birth
   std::vector<TrackedFeature> features_;
   std::int64_t next_id_ = 0;
   std::optional<TimeNs> last_;

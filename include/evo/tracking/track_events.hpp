@@ -5,6 +5,7 @@
 
 #include "evo/core/parallel.hpp"
 #include "evo/events/event_history.hpp"
+#include "evo/geometry/camera.hpp"
 #include "evo/io/event_reader.hpp"
 #include "evo/io/tracks.hpp"
 #include "evo/tracking/tracker_options.hpp"
@@ -29,7 +30,7 @@ struct TrackingView {
 /// stream, each as soon as the stream holds the events that the tracker of `options.method` needs. Memory does not grow
 /// with the length of the stream but for the tracks. Throws Error (kNothingToDo) if the stream is shorter than one
 /// window.
-TrackingResult TrackEvents(EventReader* reader, int width, int height, const TrackerOptions& options, ThreadPool* pool,
+TrackingResult TrackEvents(EventReader* reader, const Camera& camera, const TrackerOptions& options, ThreadPool* pool,
                            const std::function<void(double)>& progress,
                            const std::function<void(const TrackingView&)>& observe = {});
 

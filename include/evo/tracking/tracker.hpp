@@ -5,6 +5,7 @@
 
 #include "evo/core/parallel.hpp"
 #include "evo/events/event_history.hpp"
+#include "evo/geometry/camera.hpp"
 #include "evo/io/tracks.hpp"
 #include "evo/tracking/tracker_options.hpp"
 
@@ -22,12 +23,14 @@ class Tracker {
 
   /// The live features in the last frame, by ascending id.
   virtual Tracks Observations() const = 0;
+  /// Half of the window of events around the stamp that each of them comes from, s; 0 where it is not around it.
+  virtual std::vector<float> HalfWindowsS() const = 0;
   /// Whether the last frame was a key frame, where new features were detected.
   virtual bool detected() const = 0;
 };
 
 /// The tracker of `options.method`.
-std::unique_ptr<Tracker> MakeTracker(int width, int height, const TrackerOptions& options, ThreadPool* pool);
+std::unique_ptr<Tracker> MakeTracker(const Camera& camera, const TrackerOptions& options, ThreadPool* pool);
 
 /// What the positions of that tracker are, one line for the head of a track file.
 std::string DescribePositions(const TrackerOptions& options);

@@ -20,7 +20,7 @@ struct TrackerOptions {
   std::string method = "em";       ///< em or klt
   double frame_interval_s = 0.02;  ///< time between two event frames
   int features = 150;              ///< live features to aim at
-  double refill_below = 0.9;       ///< detect new ones when fewer than this share is alive: a key frame
+  double refill_below = 0.97;      ///< detect new ones when fewer than this share is alive: a key frame
   int frames_between_refills = 3;  ///< at least: where there is nothing new to find, do not look at every frame
   int flow_patch_radius_px = 15;   ///< half the side of the patch that tells a first flow: 31 x 31 px
   int patch_radius_px = 8;         ///< half the side of a feature's patch: 17 x 17 px; larger ones span more depths
@@ -29,8 +29,9 @@ struct TrackerOptions {
   double window_motion_px = 4.0;  ///< the flow moves the feature this far within its window
   double shortest_window_s = 0.004;
   double longest_window_s = 0.08;
-  int fewest_events = 50;  ///< in a patch's window, for a new feature and for an update
-  int most_events = 400;   ///< in a patch's window: of more, an even sample is taken
+  int fewest_events = 50;        ///< in a new feature's window
+  int fewest_events_alive = 15;  ///< lost with fewer in a window twice as long
+  int most_events = 400;         ///< in a patch's window: of more, an even sample is taken
 
   // Expectation maximisation.
   double flow_sigma_px = 1.5;    ///< soft association of events among themselves (EM 1), but for the last window
@@ -38,9 +39,11 @@ struct TrackerOptions {
   double fine_sigma_px = 1.0;    ///< the same, final pass; also of the last window of EM 1
   double outlier_share = 0.2;    ///< density of stray events over the patch's mean density of events
   int iterations = 20;           ///< at most, each EM
-  double flow_prior = 20.0;      ///< weight, in events, of the predicted flow
-  double affine_prior = 10.0;    ///< weight, in events, of the previous affine shape
+  double flow_prior = 8.0;       ///< weight, in events, of the predicted flow
+  double affine_prior = 20.0;    ///< weight, in events, of the predicted affine shape
   double template_gain = 0.1;    ///< share of the newest window in a template that has settled
+  bool ego_motion = true;        ///< let the camera's own motion predict how patches move, grow and bend
+  bool restore_shake = true;     ///< give back to the positions what windows smooth away while the camera shakes
   bool use_polarity = true;      ///< associate events only with template events of their own sign
 
   // When a feature is lost.
@@ -48,12 +51,15 @@ struct TrackerOptions {
   double largest_residual_px = 2.0;  ///< root mean square pull that is left on the events
   double largest_jump_px = 6.0;      ///< from where its flow predicted it
   double largest_scale = 5.0;        ///< of the patch against its template, and its inverse
-  double border_px = 6.0;            ///< a feature closer than this to the edge of the sensor is given up
+  double border_px = 3.0;            ///< a feature closer than this to the edge of the sensor is given up
 
   // Corners.
   double corner_spacing_px = 10.0;  ///< smallest distance between two features when one is born
+  double corner_closest_px = 6.0;   ///< the same where that one leaves room for too few
   double corner_share = 0.02;       ///< weakest corner accepted, as a share of a strong one (95th percentile)
   double corner_window_motion_px = 3.0;
+  /// Of an event about the position of a new feature, as a share of the usual: it must neither slide nor blur.
+  double smallest_information = 0.95;
   double fewest_cells = 8.0;  ///< px that a template's events fill: a hot pixel fills one
 
   KltOptions klt;

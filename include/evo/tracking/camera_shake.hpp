@@ -1,0 +1,27 @@
+#pragma once
+
+#include <span>
+
+#include "evo/core/parallel.hpp"
+#include "evo/core/time.hpp"
+#include "evo/geometry/camera.hpp"
+#include "evo/io/tracks.hpp"
+
+namespace evo {
+
+/// Gives back to the positions of `tracks` what the windows that they come from have smoothed away.
+///
+/// A position is the intercept of a straight motion fitted to the events of a window, so it is the mean of the true
+/// path over that window. Where the camera shakes (vibration, bumps) within the long window of a slow feature, that is
+/// not where the feature was at the stamp. But the shake is a rotation that all features share, and the fast ones with
+/// their short windows show it. So with a rotation phi(t) that is a cubic B-spline, J_i the image motion that it causes
+/// at track i, and K_i the mean over the window, each track is
+///     x_i(t) = s_i(t) + J_i(t) (K_i phi)(t) + noise
+/// with a smooth path s_i, of which fourth differences over time leave next to nothing. phi follows from those of all
+/// tracks by robust linear least squares, and each position moves by J_i (phi - K_i phi).
+///
+/// `half_windows_s`: half of the window of each observation, s; 0: of an instant. Every few seconds are solved for
+/// themselves.
+void RestoreShake(const Camera& camera, std::span<const float> half_windows_s, ThreadPool* pool, Tracks* tracks);
+
+}  // namespace evo

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "evo/tracking/flow_field.hpp"
+#include "evo/tracking/lens_grid.hpp"
+
+namespace evo {
+
+/// How a patch of a plane changes while the camera moves, to second order: a point at y px from the patch's centre
+/// moves, relative to the centre, with rate * y + (bend . y) y.
+struct PatchFlow {
+  Eigen::Vector2d acceleration = Eigen::Vector2d::Zero();  ///< of the centre, px/s^2
+  Eigen::Matrix2d rate = Eigen::Matrix2d::Zero();          ///< 1/s
+  Eigen::Vector2d bend = Eigen::Vector2d::Zero();          ///< 1/(px s), of foreshortening
+};
+
+/// The camera's own motion, from the optical flow of many features: a point at x on the plane z = 1 with inverse depth
+/// rho moves with rho (V_z x - V_xy) and with the rotation (H. C. Longuet-Higgins, K. Prazdny: The Interpretation of a
+/// Moving Retinal Image, Proc. R. Soc. B 1980). Only the direction of V can be known, so inverse depths are in units of
+/// the speed, 1/s.
+class EgoMotion {
+ public:
+  explicit EgoMotion(const Camera& camera) : lens_(camera) {}
+
+  /// Finds the motion from the flows of features, by iteratively reweighted Gauss-Newton from the last motion on.
+  void Update(const std::vector<FlowSample>& features);
+  /// Whether the flows determined a motion.
+  bool known() const { return known_; }
+  const Eigen::Vector3d& direction() const { return direction_; }
+  const Eigen::Vector3d& turn_rate() const { return turn_rate_; }  ///< of the world about the camera, rad/s
+
+  /// Of a plane whose inverse depth has the gradient `slope`, 1/(px s), where a feature has this flow.
+  PatchFlow At(const FlowSample& feature, const Eigen::Vector2d& slope) const;
+  /// Whether a resting point may move like this while the camera does; true while the motion is not known.
+  bool Allows(const FlowSample& feature) const;
+  /// The slope that explains best that a patch's rate is `rate` more than At() said; 0 where nothing tells.
+  Eigen::Vector2d SlopeOf(const Eigen::Vector2d& position, const Eigen::Matrix2d& rate) const;
+
+ private:
+  /// Image motion, px/s, of a point of inverse depth 1.
+  Eigen::Vector2d Away(const PixelGeometry& pixel) const {
+    return pixel.by_normalized * (direction_.z() * pixel.normalized - direction_.head<2>());
+  }
+  /// The sum of squares that is left, with the usual size of a residual.
+  double Refine(const std::vector<FlowSample>& features, const std::vector<PixelGeometry>& pixels);
+
+  LensGrid lens_;
+  bool known_ = false;
+  Eigen::Vector3d direction_ = Eigen::Vector3d::UnitZ();
+  Eigen::Vector3d turn_rate_ = Eigen::Vector3d::Zero();
+};
+
+}  // namespace evo

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "evo/geometry/camera.hpp"
+
+namespace evo {
+
+/// What the lens does around one pixel.
+struct PixelGeometry {
+  Eigen::Vector2d normalized = Eigen::Vector2d::Zero();                           ///< on the plane z = 1
+  Eigen::Matrix2d by_normalized = Eigen::Matrix2d::Zero();                        ///< px for a unit on that plane
+  Eigen::Matrix<double, 2, 3> by_rotation = Eigen::Matrix<double, 2, 3>::Zero();  ///< px for a turn of the world, rad
+};
+
+/// The same for every pixel, tabulated every few pixels, so that it may be asked for each feature in each frame. Zero
+/// where the lens model has no inverse.
+class LensGrid {
+ public:
+  static constexpr int kSpacingPx = 4;
+
+  explicit LensGrid(const Camera& camera);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  double focal_px() const { return focal_px_; }
+  /// Of the nearest grid point, but for `normalized`, which is extrapolated to `pixel`. Pixels off the sensor are taken
+  /// to its edge.
+  PixelGeometry At(const Eigen::Vector2d& pixel) const;
+
+ private:
+  int width_;
+  int height_;
+  double focal_px_;
+  int columns_;
+  int rows_;
+  std::vector<PixelGeometry> points_;
+};
+
+}  // namespace evo

@@ -1,0 +1,106 @@
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "evo/tracking/corner_detector.hpp"
+#include "evo/tracking/feature_tracker.hpp"
+
+namespace evo {
+
+namespace {
+
+constexpr int kTemplateMarginPx = 4;   // the template is larger than the patch, for events that stick out
+constexpr double kCandidates = 1.5;    // corners tried for each feature that is missing: many are no features
+constexpr double kNeighbourPx = 30.0;  // features this near probably lie on the same surface
+// Of the density that is asked for information; fixed, so that the same number means the same for all options.
+constexpr double kInformationSigmaPx = 1.0;
+constexpr double kInformationOutlierShare = 0.2;
+constexpr double kInformationGain = 0.01;  // share of one more feature in what is usual
+
+/// Of an event, in the direction in which the events tell least of where they are.
+double SmallestInformation(const DensityMap& events) {
+  thread_local AssociationField field;
+  field.Build(events, kInformationSigmaPx, kInformationOutlierShare);
+  const Eigen::Matrix2d m = field.Information(events);
+  const double mean = 0.5 * m.trace();
+  return mean - std::sqrt(std::max(0.0, mean * mean - m.determinant()));
+}
+
+}  // namespace
+
+void FeatureTracker::Refill(const EventHistory& history, TimeNs t) {
+  std::vector<FlowSample> samples;
+  std::vector<Eigen::Vector2d> taken;
+  for (const auto& feature : features_) {
+    samples.push_back({feature.position, feature.flow});
+    taken.push_back(feature.position);
+  }
+  flow_field_.Update(history, t, samples, pool_);
+  const cv::Mat image = CorrectedEventImage(history, t, flow_field_, options_.corner_window_motion_px, options_, pool_);
+  const double fewest_events = options_.fewest_events * options_.corner_window_motion_px / options_.window_motion_px;
+  const auto missing = static_cast<std::size_t>(options_.features) - features_.size();
+  const auto candidates = static_cast<int>(kCandidates * static_cast<double>(missing));
+  const auto corners = DetectCorners(image, taken, candidates, fewest_events, options_, pool_);
+  std::vector<std::optional<TrackedFeature>> born(corners.size());
+  pool_->ForEach(corners.size(), [&](std::size_t i) { born[i] = Birth(history, t, corners[i]); });
+  std::vector<TrackedFeature> fit;
+  for (auto& feature : born) {
+    if (feature) fit.push_back(std::move(*feature));
+  }
+  LearnUsualInformation(fit);
+  std::ranges::stable_sort(fit, std::ranges::greater(), &TrackedFeature::information);
+  for (auto& feature : fit) {
+    if (features_.size() >= static_cast<std::size_t>(options_.features)) break;
+    if (feature.information < options_.smallest_information * usual_information_) break;
+    feature.id = next_id_++;
+    features_.push_back(std::move(feature));
+  }
+}
+
+void FeatureTracker::LearnUsualInformation(const std::vector<TrackedFeature>& born) {
+  for (const auto& feature : born) {
+    const double share = usual_information_ > 0.0 ? kInformationGain : 1.0;
+    usual_information_ += share * (feature.information - usual_information_);
+  }
+}
+
+std::optional<TrackedFeature> FeatureTracker::Birth(const EventHistory& history, TimeNs t,
+                                                    const Eigen::Vector2d& position) const {
+  Eigen::Vector2d flow = flow_field_.At(position.x(), position.y());
+  if (!EstimateFlow(history, t, position.x(), position.y(), options_, &flow)) return std::nullopt;
+  if (!ego_motion_.Allows({position, flow})) return std::nullopt;
+  thread_local LocalEvents events;
+  const TimeNs half_window = HalfWindow(flow, options_.window_motion_px, options_);
+  history.Gather(
+      {t, position.x(), position.y(), flow.x(), flow.y(), static_cast<double>(options_.patch_radius_px), half_window},
+      &events);
+  if (events.size() < static_cast<std::size_t>(options_.fewest_events)) return std::nullopt;
+  TrackedFeature feature{.position = position,
+                         .flow = flow,
+                         .slope = NeighbouringSlope(position),
+                         .events = DensityMap(options_.patch_radius_px + kTemplateMarginPx, planes()),
+                         .half_window = half_window};
+  const PatchFlow patch = ego_motion_.At({position, flow}, feature.slope);
+  PatchMotion motion;
+  motion.flow = flow;
+  motion.rate = patch.rate;
+  motion.bend = patch.bend;
+  Accumulate(events, motion, &feature.events);
+  if (feature.events.EffectiveCells() < options_.fewest_cells) return std::nullopt;
+  feature.information = SmallestInformation(feature.events);
+  feature.events.Scale(static_cast<float>(1.0 / feature.events.Total()));
+  return feature;
+}
+
+Eigen::Vector2d FeatureTracker::NeighbouringSlope(const Eigen::Vector2d& position) const {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  int count = 0;
+  for (const auto& other : features_) {
+    if ((other.position - position).norm() > kNeighbourPx) continue;
+    sum += other.slope;
+    ++count;
+  }
+  return sum / std::max(count, 1);
+}
+
+}  // namespace evo

@@ -1,0 +1,106 @@
+#include "evo/tracking/camera_shake.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <random>
+
+#include "evo/geometry/known_cameras.hpp"
+#include "evo/geometry/se3.hpp"
+
+namespace evo {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kFrameS = 0.02;
+constexpr int kFrames = 400;
+
+/// Points far away, seen by a camera that turns slowly and vibrates; each position is the mean over a window.
+struct ShakyTracks {
+  Camera camera{MvsecDavis346()};
+  double amplitude_rad = 0.002;
+  double frequency_hz = 12.0;
+  Tracks smoothed, exact;
+  std::vector<float> half_windows_s;
+
+  Vector3d Turn(double t) const {
+    const double shake = amplitude_rad * std::sin(2.0 * M_PI * frequency_hz * t);
+    return {0.004 * std::sin(2.0 * t) + shake, 0.02 * t + 0.5 * shake, 0.0};
+  }
+
+  explicit ShakyTracks(double noise_px, double amplitude = 0.002) : amplitude_rad(amplitude) {
+    std::mt19937 random(7);
+    const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
+    std::vector<Vector3d> rays;
+    for (int i = 0; i < 40; ++i) {
+      rays.push_back(camera.Undistort({30.0 + 280.0 * uniform(), 30.0 + 200.0 * uniform()})->homogeneous());
+    }
+    for (int frame = 0; frame < kFrames; ++frame) {
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        const double t = frame * kFrameS;
+        const double half = i % 2 ? 0.04 : 0.005;
+        Vector2d mean = Vector2d::Zero();
+        constexpr int kSteps = 40;
+        for (int k = 0; k < kSteps; ++k) {
+          mean += camera.Project(so3::Exp(Turn(t + half * ((k + 0.5) * 2.0 / kSteps - 1.0))) * rays[i]) / kSteps;
+        }
+        mean += noise_px * Vector2d(uniform() - 0.5, uniform() - 0.5);
+        const Vector2d now = camera.Project(so3::Exp(Turn(t)) * rays[i]);
+        smoothed.push_back({static_cast<std::int64_t>(i), FromSeconds(t), mean.x(), mean.y()});
+        exact.push_back({static_cast<std::int64_t>(i), FromSeconds(t), now.x(), now.y()});
+        half_windows_s.push_back(static_cast<float>(half));
+      }
+    }
+  }
+
+  /// Root mean square over the tracks with long windows.
+  double Error(const Tracks& tracks) const {
+    double sum = 0.0;
+    int count = 0;
+    for (std::size_t i = 0; i < tracks.size(); ++i) {
+      if (half_windows_s[i] < 0.02f) continue;
+      sum += std::pow(tracks[i].x - exact[i].x, 2) + std::pow(tracks[i].y - exact[i].y, 2);
+      ++count;
+    }
+    return std::sqrt(sum / count);
+  }
+};
+
+TEST(RestoreShake, GivesBackWhatLongWindowsSmoothAway) {
+  const ShakyTracks scene(0.1);
+  ThreadPool pool(2);
+  Tracks restored = scene.smoothed;
+  RestoreShake(scene.camera, scene.half_windows_s, &pool, &restored);
+  EXPECT_GT(scene.Error(scene.smoothed), 0.25);
+  EXPECT_LT(scene.Error(restored), 0.4 * scene.Error(scene.smoothed));
+}
+
+TEST(RestoreShake, HardlyDisturbsASteadyCamera) {
+  const ShakyTracks scene(0.1, 0.0);
+  ThreadPool pool(1);
+  Tracks restored = scene.smoothed;
+  RestoreShake(scene.camera, scene.half_windows_s, &pool, &restored);
+  EXPECT_LT(scene.Error(restored), scene.Error(scene.smoothed) + 0.02);
+}
+
+TEST(RestoreShake, IsTheSameForAnyNumberOfThreadsAndLeavesInstantsAlone) {
+  const ShakyTracks scene(0.1);
+  ThreadPool one(1), three(3);
+  Tracks a = scene.smoothed, b = scene.smoothed, c = scene.smoothed;
+  RestoreShake(scene.camera, scene.half_windows_s, &one, &a);
+  RestoreShake(scene.camera, scene.half_windows_s, &three, &b);
+  RestoreShake(scene.camera, std::vector<float>(c.size(), 0.0f), &one, &c);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_EQ(a[i].x, b[i].x);
+    ASSERT_EQ(a[i].y, b[i].y);
+    ASSERT_EQ(c[i].x, scene.smoothed[i].x);
+  }
+  Tracks nothing;
+  RestoreShake(scene.camera, {}, &one, &nothing);
+}
+
+}  // namespace
+}  // namespace evo

@@ -1,0 +1,134 @@
+#include "evo/tracking/ego_motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <random>
+
+#include "evo/geometry/known_cameras.hpp"
+#include "evo/geometry/se3.hpp"
+
+namespace evo {
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kStep = 1e-4;  // s, of numeric derivatives
+
+/// A camera that moves with `velocity` (m/s) while the world turns about it with `turn_rate` (rad/s).
+struct Mover {
+  Camera camera{MvsecDavis346()};
+  Vector3d velocity{0.4, -0.3, 8.0};
+  Vector3d turn_rate{0.05, -0.2, 0.1};
+
+  /// Where a point, given in camera coordinates at time 0, is seen at `t`.
+  Vector2d Seen(const Vector3d& point, double t) const {
+    return camera.Project(so3::Exp(t * turn_rate) * Vector3d(point - t * velocity));
+  }
+  FlowSample Sample(const Vector3d& point) const {
+    return {Seen(point, 0.0), (Seen(point, kStep) - Seen(point, -kStep)) / (2.0 * kStep)};
+  }
+};
+
+std::vector<FlowSample> Flows(const Mover& mover, int count, double noise_px_s, unsigned seed) {
+  std::mt19937 random(seed);
+  const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
+  std::vector<FlowSample> samples;
+  while (static_cast<int>(samples.size()) < count) {
+    const double z = 5.0 + 30.0 * uniform();
+    FlowSample sample = mover.Sample({z * (1.4 * uniform() - 0.7), z * (1.0 * uniform() - 0.5), z});
+    if (!mover.camera.Contains(sample.position, 5.0)) continue;
+    sample.flow += noise_px_s * Vector2d(uniform() - 0.5, uniform() - 0.5);
+    samples.push_back(sample);
+  }
+  return samples;
+}
+
+double AngleDeg(const Vector3d& a, const Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)) * 180.0 / M_PI; }
+
+TEST(EgoMotion, FindsForwardAndSidewaysMotion) {
+  for (const Vector3d& velocity : {Vector3d(0.4, -0.3, 8.0), Vector3d(3.0, 0.0, 0.2), Vector3d(0.0, -2.0, -1.0)}) {
+    Mover mover;
+    mover.velocity = velocity;
+    EgoMotion motion(mover.camera);
+    motion.Update(Flows(mover, 80, 0.0, 3));
+    ASSERT_TRUE(motion.known());
+    EXPECT_LT(AngleDeg(motion.direction(), velocity), 0.5) << velocity.transpose();
+    EXPECT_LT((motion.turn_rate() - mover.turn_rate).norm(), 0.005) << velocity.transpose();
+  }
+}
+
+TEST(EgoMotion, WithstandsNoiseAndMovingObjects) {
+  const Mover mover;
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    auto samples = Flows(mover, 100, 6.0, seed);
+    for (std::size_t i = 0; i < 20; ++i) samples[5 * i].flow += Vector2d(-60.0, 20.0);
+    EgoMotion motion(mover.camera);
+    motion.Update(samples);
+    ASSERT_TRUE(motion.known()) << seed;
+    EXPECT_LT(AngleDeg(motion.direction(), mover.velocity), 3.0) << seed;
+    EXPECT_LT((motion.turn_rate() - mover.turn_rate).norm(), 0.03) << seed;
+  }
+}
+
+TEST(EgoMotion, IsUnknownWithoutEnoughFlowsOrWhereTheyContradict) {
+  const Mover mover;
+  EgoMotion motion(mover.camera);
+  motion.Update(Flows(mover, 5, 0.0, 1));
+  EXPECT_FALSE(motion.known());
+  motion.Update(Flows(mover, 60, 400.0, 1));
+  EXPECT_FALSE(motion.known());
+  const PatchFlow patch = motion.At({{100, 100}, {10, 20}}, {0.01, 0.0});
+  EXPECT_TRUE(patch.rate.isZero() && patch.bend.isZero() && patch.acceleration.isZero());
+  EXPECT_TRUE(motion.SlopeOf({100, 100}, Matrix2d::Identity()).isZero());
+}
+
+TEST(EgoMotion, AllowsOnlyWhatARestingPointMayDo) {
+  Mover mover;
+  mover.turn_rate.setZero();
+  EgoMotion motion(mover.camera);
+  const FlowSample resting = mover.Sample({1.0, 0.8, 6.0});
+  const FlowSample backwards{resting.position, -resting.flow};
+  const FlowSample across{resting.position, {-resting.flow.y(), resting.flow.x()}};
+  EXPECT_TRUE(motion.Allows(backwards));  // nothing is known yet
+  motion.Update(Flows(mover, 80, 0.0, 3));
+  EXPECT_TRUE(motion.Allows(resting));
+  EXPECT_FALSE(motion.Allows(backwards));
+  EXPECT_FALSE(motion.Allows(across));
+}
+
+TEST(EgoMotion, PredictsHowAPatchOfThePlaneOfTheRoadChanges) {
+  const Mover mover;
+  EgoMotion motion(mover.camera);
+  motion.Update(Flows(mover, 80, 0.0, 3));
+  ASSERT_TRUE(motion.known());
+  // The road, y = 1.5 m: inverse depth y / 1.5 on the plane z = 1.
+  constexpr double kHeight = 1.5;
+  const auto on_road = [&](const Vector2d& pixel) {
+    const auto x = mover.camera.Undistort(pixel);
+    return Vector3d(kHeight / x->y() * Vector3d(x->x(), x->y(), 1.0));
+  };
+  const Vector2d centre(120, 190);
+  const FlowSample sample = mover.Sample(on_road(centre));
+  const double speed = mover.velocity.norm();
+  const Vector2d slope(0.0, speed / kHeight / mover.camera.calibration().fy);
+  const PatchFlow patch = motion.At(sample, slope);
+  for (const Vector2d& y : {Vector2d(6, 0), Vector2d(0, 6), Vector2d(-5, -5), Vector2d(4, -6)}) {
+    const Vector2d expected = mover.Sample(on_road(centre + y)).flow - sample.flow;
+    const Vector2d predicted = patch.rate * y + patch.bend.dot(y) * y;
+    EXPECT_LT((predicted - expected).norm(), 0.15 * expected.norm() + 0.3) << y.transpose();
+  }
+  const Vector2d acceleration = (mover.Seen(on_road(centre), 2e-3) - 2.0 * mover.Seen(on_road(centre), 0.0) +
+                                 mover.Seen(on_road(centre), -2e-3)) /
+                                4e-6;
+  EXPECT_LT((patch.acceleration - acceleration).norm(), 0.25 * acceleration.norm());
+
+  // A patch thought to face the camera grows otherwise than predicted; that tells the slope.
+  const Matrix2d unexpected = patch.rate - motion.At(sample, Vector2d::Zero()).rate;
+  EXPECT_LT((motion.SlopeOf(sample.position, unexpected) - slope).norm(), 0.1 * slope.norm());
+}
+
+}  // namespace
+}  // namespace evo
