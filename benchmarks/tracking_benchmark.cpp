@@ -143,7 +143,7 @@ void EventImage(benchmark::State& state) {
   ThreadPool pool(1);
   field.Update(history, kStamp, {}, &pool);
   for (auto _ : state) {
-    const cv::Mat image = CorrectedEventImage(history, kStamp, field, options.corner_window_motion_px, options);
+    const cv::Mat image = CorrectedEventImage(history, kStamp, field, options.corner_window_motion_px, options, &pool);
     benchmark::DoNotOptimize(image.data);
   }
   CountEvents(state, SceneEvents().size());
@@ -156,8 +156,8 @@ void DetectCornersInImage(benchmark::State& state) {
   FlowField field(Scene().width, Scene().height, options);
   ThreadPool pool(1);
   field.Update(history, kStamp, {}, &pool);
-  const cv::Mat image = CorrectedEventImage(history, kStamp, field, options.corner_window_motion_px, options);
-  for (auto _ : state) benchmark::DoNotOptimize(DetectCorners(image, {}, 50, options));
+  const cv::Mat image = CorrectedEventImage(history, kStamp, field, options.corner_window_motion_px, options, &pool);
+  for (auto _ : state) benchmark::DoNotOptimize(DetectCorners(image, {}, 50, 0.0, options, &pool));
 }
 BENCHMARK(DetectCornersInImage);
 

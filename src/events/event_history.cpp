@@ -69,10 +69,10 @@ void EventHistory::DropBefore(TimeNs t) {
   }
 }
 
-TimeNs EventHistory::BeginOfNewest(TimeNs end, std::size_t count) const {
+TimeNs EventHistory::BeginOfNewest(TimeNs begin, TimeNs end, std::size_t count) const {
   std::vector<TimeNs> stamps;
   for (const Tile& tile : tiles_) {
-    for (const Entry& entry : tile.Between(std::numeric_limits<TimeNs>::min(), end)) stamps.push_back(entry.t);
+    for (const Entry& entry : tile.Between(begin, end)) stamps.push_back(entry.t);
   }
   if (stamps.empty() || count == 0) return end;
   const auto first = stamps.begin() + static_cast<std::ptrdiff_t>(std::min(count, stamps.size()) - 1);

@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t kBytes = sizeof(double);
 constexpr hsize_t kLargestChunkRows = 262144;  // larger chunks are read in parts, for which HDF5 keeps them decoded
+constexpr hsize_t kLargestOverhead = 1024;     // of what does not get smaller by deflating
 
 /// Elements [first, first + count) of `total` whose bytes are stored by their place: all first ones, all second ones...
 void Unshuffle(const std::uint8_t* planes, std::size_t total, std::size_t first, std::size_t count, double* values) {
@@ -42,14 +43,19 @@ bool ColumnReader::IsPlainChunked() {
   const int filters = H5Pget_nfilters(creation.get());
   for (int i = 0; i < filters; ++i) {
     unsigned flags = 0;
-    std::size_t parameters = 0;
+    std::size_t parameters = 1;
+    unsigned parameter = 0;
     const H5Z_filter_t filter =
-        H5Pget_filter2(creation.get(), static_cast<unsigned>(i), &flags, &parameters, nullptr, 0, nullptr, nullptr);
-    const bool known = (filter == H5Z_FILTER_SHUFFLE && i == 0) || (filter == H5Z_FILTER_DEFLATE && i + 1 == filters);
+        H5Pget_filter2(creation.get(), static_cast<unsigned>(i), &flags, &parameters, &parameter, 0, nullptr, nullptr);
+    const bool known = (filter == H5Z_FILTER_SHUFFLE && i == 0 && parameter == kBytes) ||
+                       (filter == H5Z_FILTER_DEFLATE && i + 1 == filters);
     if (!known) return false;
     (filter == H5Z_FILTER_SHUFFLE ? shuffled_ : deflated_) = true;
   }
-  return chunk_rows_ <= kLargestChunkRows && chunk_columns_ <= table_.shape()[1];
+  unsigned options = 0;  // edge chunks may be exempt from filters
+  if (H5Pget_chunk_opts(creation.get(), &options) < 0 || options != 0) return false;
+  return chunk_rows_ > 0 && chunk_columns_ > 0 && chunk_rows_ <= kLargestChunkRows &&
+         chunk_columns_ <= table_.shape()[1];
 }
 
 void ColumnReader::Read(hsize_t first, hsize_t rows, std::vector<double>* values) {
@@ -88,17 +94,20 @@ bool ColumnReader::ReadChunk(hsize_t chunk_row, hsize_t chunk_column, hsize_t fi
 }
 
 bool ColumnReader::LoadChunk(hsize_t chunk_row, hsize_t chunk_column) {
+  SetUp();  // of this thread
   const std::array<hsize_t, 2> offset{chunk_row * chunk_rows_, chunk_column * chunk_columns_};
   hsize_t stored_bytes = 0;
   std::uint32_t skipped_filters = 0;
   if (H5Dget_chunk_storage_size(table_.id(), offset.data(), &stored_bytes) < 0 || stored_bytes == 0) return false;
+  const hsize_t chunk_bytes = chunk_rows_ * chunk_columns_ * kBytes;
+  if (stored_bytes > 2 * chunk_bytes + kLargestOverhead) return false;  // damaged: HDF5 shall say how
   stored_.resize(stored_bytes);
   if (H5Dread_chunk(table_.id(), H5P_DEFAULT, offset.data(), &skipped_filters, stored_.data()) < 0) return false;
   if (skipped_filters != 0) return false;
-  inflated_.resize(chunk_rows_ * chunk_columns_ * kBytes);
+  inflated_.resize(chunk_bytes);
   if (deflated_) return Inflate(stored_, inflated_);
   std::swap(stored_, inflated_);
-  return inflated_.size() == chunk_rows_ * chunk_columns_ * kBytes;
+  return inflated_.size() == chunk_bytes;
 }
 
 void ColumnReader::ReadWithHdf5(hsize_t first, hsize_t rows, double* values) {

@@ -38,13 +38,14 @@ constexpr double kToInteger = 0x1p52;
 
 /// False if one is not a whole number in [0, size).
 bool ConvertCoordinates(const double* values, std::size_t count, int size, std::uint16_t* __restrict coordinates) {
-  const std::int64_t last = size - 1;
+  const auto last = static_cast<std::uint64_t>(size - 1);
   std::int64_t outside = 0;  // negative if there was one
   std::int64_t broken = 0;   // not zero if there was one
   for (std::size_t i = 0; i < count; ++i) {
     const double shifted = values[i] + kToInteger;
-    const std::int64_t pixel = std::bit_cast<std::int64_t>(shifted) - std::bit_cast<std::int64_t>(kToInteger);
-    outside |= pixel | (last - pixel);
+    // Without a sign, since it may overflow.
+    const std::uint64_t pixel = std::bit_cast<std::uint64_t>(shifted) - std::bit_cast<std::uint64_t>(kToInteger);
+    outside |= static_cast<std::int64_t>(pixel | (last - pixel));
     broken |= std::bit_cast<std::int64_t>((shifted - kToInteger) - values[i]);
     coordinates[i] = static_cast<std::uint16_t>(pixel);
   }

@@ -14,7 +14,7 @@ namespace evo {
 namespace {
 
 constexpr double kKnotS = 0.02;             // of the spline: follows a shake of up to some 20 Hz
-constexpr double kLongestHalfWindow = 4.5;  // knots; longer windows are treated like this
+constexpr double kLongestHalfWindow = 4.0;  // knots; longer windows are treated like this
 constexpr int kWeights = 12;                // knots that such a window depends on
 constexpr double kInstant = 1e-3;           // knots; a shorter half window is none
 constexpr std::array<double, 5> kDifference{1.0, -4.0, 6.0, -4.0, 1.0};
@@ -67,11 +67,6 @@ class ShakeEquations {
     }
   }
 
-  void Add(const ShakeEquations& other) {
-    for (std::size_t i = 0; i < blocks_.size(); ++i) blocks_[i] += other.blocks_[i];
-    for (std::size_t i = 0; i < right_.size(); ++i) right_[i] += other.right_[i];
-  }
-
   std::vector<Eigen::Vector3d> Solve() const {
     const auto knots = static_cast<int>(right_.size());
     std::vector<Eigen::Triplet<double>> entries;
@@ -90,8 +85,10 @@ class ShakeEquations {
     }
     Eigen::SparseMatrix<double> lower(3 * knots, 3 * knots);
     lower.setFromTriplets(entries.begin(), entries.end());
-    const Eigen::VectorXd solution = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(lower).solve(right);
-    std::vector<Eigen::Vector3d> coefficients(right_.size());
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors(lower);
+    std::vector<Eigen::Vector3d> coefficients(right_.size(), Eigen::Vector3d::Zero());
+    if (factors.info() != Eigen::Success) return coefficients;
+    const Eigen::VectorXd solution = factors.solve(right);
     for (int i = 0; i < knots; ++i) coefficients[i] = solution.segment<3>(3 * i);
     return coefficients;
   }
@@ -113,6 +110,11 @@ class ShakeEstimator {
     std::ranges::stable_sort(order_, {}, [&](std::size_t i) { return tracks_[i].id; });
     for (std::size_t i = 0; i < order_.size(); ++i) {
       if (i == 0 || tracks_[order_[i]].id != tracks_[order_[i - 1]].id) starts_.push_back(i);
+    }
+    const auto second = std::ranges::upper_bound(tracks_, tracks_.front().t, {}, &TrackObservation::t);
+    if (second != tracks_.end()) {
+      const double frame_s = ToSeconds(second->t - tracks_.front().t);
+      stride_ = static_cast<std::size_t>(std::clamp(kKnotS / frame_s + 0.5, 1.0, 1000.0));
     }
     const auto knots = static_cast<std::size_t>(InKnots(tracks_.back().t)) + 2 * kWeights;
     coefficients_.assign(knots, Eigen::Vector3d::Zero());
@@ -160,23 +162,25 @@ class ShakeEstimator {
       samples.clear();
       const std::size_t end = track + 1 < starts_.size() ? starts_[track + 1] : order_.size();
       for (std::size_t i = starts_[track]; i < end; ++i) samples.push_back(MakeSample(order_[i]));
-      for (std::size_t i = 0; i + kDifference.size() <= samples.size(); ++i) {
-        AddDifference(std::span(samples).subspan(i, kDifference.size()), &equations);
+      for (std::size_t i = 0; i + 4 * stride_ < samples.size(); ++i) {
+        AddDifference({&samples[i], &samples[i + stride_], &samples[i + 2 * stride_], &samples[i + 3 * stride_],
+                       &samples[i + 4 * stride_]},
+                      &equations);
       }
     }
     coefficients_ = equations.Solve();
   }
 
-  void AddDifference(std::span<const Sample> samples, ShakeEquations* equations) const {
-    const int first = samples.front().first;
-    if (samples.back().first - first > kSpan - kWeights) return;  // frames so far apart tell nothing of shakes
+  void AddDifference(const std::array<const Sample*, 5>& samples, ShakeEquations* equations) const {
+    const int first = samples.front()->first;
+    if (samples.back()->first - first > kSpan - kWeights) return;  // frames so far apart tell nothing of shakes
     std::array<ImageJacobian, kSpan> rows;
     rows.fill(ImageJacobian::Zero());
     Eigen::Vector2d difference = Eigen::Vector2d::Zero();
     for (std::size_t d = 0; d < kDifference.size(); ++d) {
-      difference += kDifference[d] * samples[d].position;
+      difference += kDifference[d] * samples[d]->position;
       for (int k = 0; k < kWeights; ++k) {
-        rows[samples[d].first - first + k] += kDifference[d] * samples[d].window[k] * samples[d].jacobian;
+        rows[samples[d]->first - first + k] += kDifference[d] * samples[d]->window[k] * samples[d]->jacobian;
       }
     }
     Eigen::Vector2d left = difference;
@@ -190,6 +194,7 @@ class ShakeEstimator {
   std::span<const float> half_windows_s_;
   std::vector<std::size_t> order_;   // of the observations, track by track
   std::vector<std::size_t> starts_;  // of the tracks in it
+  std::size_t stride_ = 1;           // frames from one knot to the next
   std::vector<Eigen::Vector3d> coefficients_;
 };
 
@@ -215,6 +220,7 @@ void RestoreShake(const Camera& camera, std::span<const float> half_windows_s, T
                                    half_windows_s.subspan(first, count));
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Vector2d restored = estimator.Restored(i - first);
+      if (!camera.Contains(restored)) continue;
       (*tracks)[i].x = restored.x();
       (*tracks)[i].y = restored.y();
     }

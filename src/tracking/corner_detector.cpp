@@ -45,7 +45,7 @@ struct TileFlow {
 struct HalfWindowLimits {
   double motion_px, shortest_s, longest_s;
 
-  double Of(double speed) const { return std::clamp(motion_px / std::max(speed, 1e-3), shortest_s, longest_s); }
+  double Of(double speed) const { return std::min(std::max(motion_px / std::max(speed, 1e-3), shortest_s), longest_s); }
 };
 
 void Vote(float x, float y, cv::Mat* image) {

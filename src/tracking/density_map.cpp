@@ -55,12 +55,15 @@ DensityMap DensityMap::Warped(const Eigen::Matrix2d& linear, const Eigen::Vector
       for (int c = 0; c < side(); ++c, ++target) {
         const Eigen::Vector2f straight =
             inverse * Eigen::Vector2f(static_cast<float>(c - radius_), static_cast<float>(r - radius_));
-        const Eigen::Vector2f u = straight / (1.0f - perspective.cast<float>().dot(straight));
+        const float depth = 1.0f - perspective.cast<float>().dot(straight);  // of the centre over that of the cell
+        if (!(depth > 0.0f)) continue;                                       // beyond the plane's horizon
+        const Eigen::Vector2f u = straight / depth;
         const float column = u.x() + static_cast<float>(radius_);
         const float row = u.y() + static_cast<float>(radius_);
+        const auto last = static_cast<float>(side() - 1);
+        if (!(column >= 0.0f && row >= 0.0f && column < last && row < last)) continue;
         const int c0 = static_cast<int>(column);
         const int r0 = static_cast<int>(row);
-        if (!(column >= 0.0f && row >= 0.0f) || c0 >= side() - 1 || r0 >= side() - 1) continue;
         const float fx = column - static_cast<float>(c0);
         const float fy = row - static_cast<float>(r0);
         const float* cell = plane(p) + r0 * side() + c0;

@@ -16,6 +16,7 @@ constexpr double kSmallestErrorPxS = 2.0;  // and besides
 constexpr double kLargestError = 0.2;      // of the flow of a resting point, as a share of it,
 constexpr double kLargestErrorPxS = 15.0;  // and besides
 constexpr double kLargestCost = 0.5;       // of a motion that explains the flows: mean of the robust loss, at most 1
+constexpr double kGoodCost = 0.2;          // beyond this another minimum is looked for
 constexpr double kNearPx = 10.0;           // closer to where the camera heads than this, slopes are not seen
 
 using Vector5d = Eigen::Matrix<double, 5, 1>;
@@ -29,6 +30,8 @@ Eigen::Matrix<double, 3, 2> Tangents(const Eigen::Vector3d& v) {
   return tangents;
 }
 
+bool IsUnknown(const PixelGeometry& pixel) { return pixel.by_normalized.isZero(0.0); }
+
 }  // namespace
 
 double EgoMotion::Refine(const std::vector<FlowSample>& features, const std::vector<PixelGeometry>& pixels) {
@@ -39,6 +42,7 @@ double EgoMotion::Refine(const std::vector<FlowSample>& features, const std::vec
     cost = 0.0;
     const Eigen::Matrix<double, 3, 2> tangents = Tangents(direction_);
     for (std::size_t i = 0; i < features.size(); ++i) {
+      if (IsUnknown(pixels[i])) continue;
       // What is left of the flow across the line along which translation moves the point.
       const Eigen::Vector2d flow = features[i].flow - pixels[i].by_rotation * turn_rate_;
       const Eigen::Vector2d away = Away(pixels[i]);
@@ -78,7 +82,7 @@ void EgoMotion::Update(const std::vector<FlowSample>& features) {
   for (const auto& feature : features) pixels.push_back(lens_.At(feature.position));
 
   std::vector<Eigen::Vector3d> starts{Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY()};
-  if (was_known) starts = {direction_};
+  if (was_known) starts.insert(starts.begin(), direction_);
   const Eigen::Vector3d turn_rate = was_known ? turn_rate_ : Eigen::Vector3d::Zero();
   double best = kLargestCost;
   Eigen::Vector3d best_direction = starts[0], best_turn_rate = turn_rate;
@@ -86,21 +90,31 @@ void EgoMotion::Update(const std::vector<FlowSample>& features) {
     direction_ = start;
     turn_rate_ = turn_rate;
     const double cost = Refine(features, pixels);
-    if (!(cost < best)) continue;
-    best = cost;
-    best_direction = direction_;
-    best_turn_rate = turn_rate_;
-    known_ = true;
+    if (cost < best) {
+      best = cost;
+      best_direction = direction_;
+      best_turn_rate = turn_rate_;
+      known_ = true;
+    }
+    if (was_known && best < kGoodCost) break;
   }
   direction_ = best_direction;
   turn_rate_ = best_turn_rate;
-  // Points lie in front of the camera.
-  double towards = 0.0;
+  Orient(features, pixels);
+}
+
+void EgoMotion::Orient(const std::vector<FlowSample>& features, const std::vector<PixelGeometry>& pixels) {
+  std::size_t departing = 0, nearing = 0;
   for (std::size_t i = 0; i < features.size(); ++i) {
-    const double along = Away(pixels[i]).normalized().dot(features[i].flow - pixels[i].by_rotation * turn_rate_);
-    towards += std::clamp(along, -1.0, 1.0);
+    const Eigen::Vector2d flow = features[i].flow - pixels[i].by_rotation * turn_rate_;
+    const double along = Away(pixels[i]).normalized().dot(flow);
+    const double usual = 2.0 * (kSmallestErrorPxS + kUsualError * features[i].flow.norm());
+    if (along > usual) ++departing;
+    if (along < -usual) ++nearing;
   }
-  if (towards < 0.0) direction_ = -direction_;
+  // Points lie in front of the camera, so they depart from where it heads.
+  if (nearing > departing) direction_ = -direction_;
+  if (departing + nearing < kFewestFeatures / 2) known_ = false;  // it stands, or only turns
 }
 
 PatchFlow EgoMotion::At(const FlowSample& feature, const Eigen::Vector2d& slope) const {
@@ -108,17 +122,18 @@ PatchFlow EgoMotion::At(const FlowSample& feature, const Eigen::Vector2d& slope)
   const PixelGeometry pixel = lens_.At(feature.position);
   const Eigen::Vector2d away = Away(pixel);
   const Eigen::Vector2d flow = feature.flow - pixel.by_rotation * turn_rate_;
-  const double inverse_depth = away.dot(flow) / (away.squaredNorm() + kNearPx * kNearPx);
+  const double inverse_depth = std::max(0.0, away.dot(flow)) / (away.squaredNorm() + kNearPx * kNearPx);
   PatchFlow patch;
   patch.acceleration = 2.0 * inverse_depth * direction_.z() * flow;
   constexpr double kStep = 2.0 * LensGrid::kSpacingPx;
-  const auto plane_flow = [&](const Eigen::Vector2d& step) -> Eigen::Vector2d {
-    const PixelGeometry there = lens_.At(feature.position + step);
-    return there.by_rotation * turn_rate_ + (inverse_depth + slope.dot(step)) * Away(there);
-  };
   for (int axis = 0; axis < 2; ++axis) {
     const Eigen::Vector2d step = kStep * Eigen::Vector2d::Unit(axis);
-    patch.rate.col(axis) = (plane_flow(step) - plane_flow(-step)) / (2.0 * kStep);
+    const PixelGeometry there = lens_.At(feature.position + step), back = lens_.At(feature.position - step);
+    if (IsUnknown(there) || IsUnknown(back)) return {};
+    const auto plane_flow = [&](const PixelGeometry& at, const Eigen::Vector2d& from_centre) -> Eigen::Vector2d {
+      return at.by_rotation * turn_rate_ + (inverse_depth + slope.dot(from_centre)) * Away(at);
+    };
+    patch.rate.col(axis) = (plane_flow(there, step) - plane_flow(back, -step)) / (2.0 * kStep);
   }
   patch.bend = direction_.z() * slope;
   return patch;

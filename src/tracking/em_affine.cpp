@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -12,6 +13,8 @@ namespace {
 constexpr double kSmallestStep = 0.01;  // px, of the offset; a few times that at the patch's and the window's edge
 // The template has an edge of some width itself, so a plain M step closes only part of the gap.
 constexpr double kOverRelaxation = 1.5;
+constexpr float kFarthest =
+    0.2f;  // depth of the patch's centre over that of its farthest points; beyond is the horizon
 
 using Design = Eigen::Matrix4d;                  // over (1, dt / half window, u / radius, v / radius)
 using Correction = Eigen::Matrix<double, 4, 2>;  // the same rows, for x and y
@@ -85,7 +88,7 @@ void TemplatePoints::Update(const LocalEvents& events, const PatchMotion& motion
     const float y0 = y - dt * (rate(1, 0) * x + rate(1, 1) * y + bent * y);
     const float a = inverse(0, 0) * x0 + inverse(0, 1) * y0;
     const float b = inverse(1, 0) * x0 + inverse(1, 1) * y0;
-    const float nearer = 1.0f / (1.0f - perspective.x() * a - perspective.y() * b);
+    const float nearer = 1.0f / std::max(kFarthest, 1.0f - perspective.x() * a - perspective.y() * b);
     out_u[i] = a * nearer;
     out_v[i] = b * nearer;
   }

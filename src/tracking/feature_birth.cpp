@@ -59,7 +59,7 @@ void FeatureTracker::Refill(const EventHistory& history, TimeNs t) {
 
 void FeatureTracker::LearnUsualInformation(const std::vector<TrackedFeature>& born) {
   for (const auto& feature : born) {
-    const double share = usual_information_ > 0.0 ? kInformationGain : 1.0;
+    const double share = std::max(kInformationGain, 1.0 / static_cast<double>(++births_));
     usual_information_ += share * (feature.information - usual_information_);
   }
 }

@@ -12,6 +12,7 @@ constexpr int kCoarseIterations = 6;
 constexpr int kNewbornFrames = 5;      // until then a feature has to prove itself
 constexpr double kSlopeGain = 0.1;     // share of what one frame tells about the slope of a feature's plane
 constexpr double kSteepest = 1e-3;     // such a slope for a flow of 1 px/s, 1/px^2
+constexpr double kRebaseBend = 0.25;   // or when depth varies by this share from its centre to its edge
 constexpr double kRebaseScale = 1.25;  // re-sample the template when the patch has grown or shrunk this much
 
 }  // namespace
@@ -154,7 +155,8 @@ void FeatureTracker::UpdateTemplate(const LocalEvents& events, const PatchMotion
   // Windows weigh the same however many events they hold.
   feature->events.Add(*window, static_cast<float>(gain / std::max(1.0, window->Total())));
   const double growth = std::sqrt(std::abs(feature->linear.determinant()));
-  if (growth > kRebaseScale || growth < 1.0 / kRebaseScale) {
+  const double bent = feature->perspective.norm() * options_.patch_radius_px;
+  if (growth > kRebaseScale || growth < 1.0 / kRebaseScale || bent > kRebaseBend) {
     feature->events = feature->events.Warped(feature->linear, feature->perspective);
     feature->perspective.setZero();
     feature->scale *= growth;

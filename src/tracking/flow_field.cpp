@@ -64,7 +64,7 @@ bool EstimateFlowTo(double settled_px, const EventHistory& history, TimeNs t, do
 
 TimeNs HalfWindow(const Eigen::Vector2d& flow, double motion_px, const TrackerOptions& options) {
   const double window = motion_px / std::max(flow.norm(), 1e-3);
-  return FromSeconds(0.5 * std::clamp(window, options.shortest_window_s, options.longest_window_s));
+  return FromSeconds(0.5 * std::min(std::max(window, options.shortest_window_s), options.longest_window_s));
 }
 
 bool EstimateFlow(const EventHistory& history, TimeNs t, double x, double y, const TrackerOptions& options,

@@ -31,11 +31,7 @@ PixelGeometry GeometryAt(const Camera& camera, const Eigen::Vector2d& pixel) {
 }  // namespace
 
 LensGrid::LensGrid(const Camera& camera)
-    : width_(camera.width()),
-      height_(camera.height()),
-      focal_px_(camera.focal_px()),
-      columns_(width_ / kSpacingPx + 2),
-      rows_(height_ / kSpacingPx + 2) {
+    : focal_px_(camera.focal_px()), columns_(camera.width() / kSpacingPx + 2), rows_(camera.height() / kSpacingPx + 2) {
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
       points_.push_back(GeometryAt(camera, Eigen::Vector2d(column, row) * kSpacingPx));

@@ -16,12 +16,14 @@ void Register(Parameters& parameters, TrackerOptions& o) {
   parameters.Add("tracker.window_motion_px", &o.window_motion_px, 0.5, 20.0, "motion within a feature's window (px)");
   parameters.Add("tracker.shortest_window_s", &o.shortest_window_s, 0.0005, 1.0, "of a feature's events (s)");
   parameters.Add("tracker.longest_window_s", &o.longest_window_s, 0.001, 2.0, "of a feature's events (s)");
-  parameters.Add("tracker.fewest_events", &o.fewest_events, 10, 10000, "in a new feature's window");
+  parameters.Add("tracker.fewest_events", &o.fewest_events, 10, 10000,
+                 "in the window of a new feature, or of a patch that tells the flow");
   parameters.Add("tracker.fewest_events_alive", &o.fewest_events_alive, 5, 10000,
                  "lost with fewer in a doubled window");
   parameters.Add("tracker.most_events", &o.most_events, 50, 1000000, "in a patch's window: of more, an even sample");
   parameters.Add("tracker.flow_sigma_px", &o.flow_sigma_px, 0.3, 10.0, "soft association, first flow (px)");
-  parameters.Add("tracker.coarse_sigma_px", &o.coarse_sigma_px, 0.3, 10.0, "soft association, first alignment (px)");
+  parameters.Add("tracker.coarse_sigma_px", &o.coarse_sigma_px, 0.3, 10.0,
+                 "soft association where the fine alignment fails (px)");
   parameters.Add("tracker.fine_sigma_px", &o.fine_sigma_px, 0.3, 10.0,
                  "soft association, last flow and last alignment (px)");
   parameters.Add("tracker.outlier_share", &o.outlier_share, 0.0, 10.0, "density of stray events over the mean density");

@@ -98,6 +98,7 @@ TEST_F(TrackEvaluationTest, OurTracksOfTheStreetKeepTheirQuality) {
 }
 
 TEST_F(TrackEvaluationTest, OurTracksOfTheNightKeepTheirQuality) {
+  // The outliers are on the rim of the head lamps' light, which moves with the car.
   ExpectQuality(JudgeTracks("night", "night_gt.hdf5", "camchain-imucam-night.yaml"),
                 {.judged = 80.0, .track_error_px = 0.95, .outlier_share = 0.07, .age_share = 0.55});
 }

@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <tuple>
 #include <vector>
 
 namespace evo {
 namespace {
+
+constexpr TimeNs kEver = std::numeric_limits<TimeNs>::min();
 
 constexpr int kWidth = 50;
 constexpr int kHeight = 37;
@@ -30,13 +33,13 @@ EventColumns RandomEvents(std::size_t count, TimeNs begin, TimeNs end) {
 TEST(EventHistory, FindsWhereTheNewestEventsBegin) {
   const EventColumns events = RandomEvents(3000, -10'000'000, 5'000'000);
   EventHistory history(kWidth, kHeight);
-  EXPECT_EQ(history.BeginOfNewest(7, 10), 7);
+  EXPECT_EQ(history.BeginOfNewest(kEver, 7, 10), 7);
   history.Append(events);
   for (const TimeNs end : {-9'000'000, -3'000'000, 0, 1'234'567, 5'000'000, 8'000'000}) {
     const auto before = std::ranges::lower_bound(events.t, end) - events.t.begin();
     for (const std::ptrdiff_t count : {1, 2, 150, 999, 2000}) {
       const TimeNs expected = count <= before ? events.t[static_cast<std::size_t>(before - count)] : events.t.front();
-      EXPECT_EQ(history.BeginOfNewest(end, static_cast<std::size_t>(count)), expected) << end << ' ' << count;
+      EXPECT_EQ(history.BeginOfNewest(kEver, end, static_cast<std::size_t>(count)), expected) << end << ' ' << count;
     }
   }
 }

@@ -15,8 +15,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kFrameS = 0.02;
-constexpr int kFrames = 400;
+constexpr double kDurationS = 8.0;
 
 /// Points far away, seen by a camera that turns slowly and vibrates; each position is the mean over a window.
 struct ShakyTracks {
@@ -31,16 +30,16 @@ struct ShakyTracks {
     return {0.004 * std::sin(2.0 * t) + shake, 0.02 * t + 0.5 * shake, 0.0};
   }
 
-  explicit ShakyTracks(double noise_px, double amplitude = 0.002) : amplitude_rad(amplitude) {
+  explicit ShakyTracks(double noise_px, double amplitude = 0.002, double frame_s = 0.02) : amplitude_rad(amplitude) {
     std::mt19937 random(7);
     const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
     std::vector<Vector3d> rays;
     for (int i = 0; i < 40; ++i) {
       rays.push_back(camera.Undistort({30.0 + 280.0 * uniform(), 30.0 + 200.0 * uniform()})->homogeneous());
     }
-    for (int frame = 0; frame < kFrames; ++frame) {
+    for (int frame = 0; frame < static_cast<int>(kDurationS / frame_s); ++frame) {
       for (std::size_t i = 0; i < rays.size(); ++i) {
-        const double t = frame * kFrameS;
+        const double t = frame * frame_s;
         const double half = i % 2 ? 0.04 : 0.005;
         Vector2d mean = Vector2d::Zero();
         constexpr int kSteps = 40;
@@ -78,6 +77,29 @@ TEST(RestoreShake, GivesBackWhatLongWindowsSmoothAway) {
   EXPECT_LT(scene.Error(restored), 0.4 * scene.Error(scene.smoothed));
 }
 
+TEST(RestoreShake, DoesSoForShortFramesToo) {
+  for (const double frame_s : {0.005, 0.01, 0.025}) {
+    const ShakyTracks scene(0.1, 0.002, frame_s);
+    ThreadPool pool(2);
+    Tracks restored = scene.smoothed;
+    RestoreShake(scene.camera, scene.half_windows_s, &pool, &restored);
+    EXPECT_LT(scene.Error(restored), 0.55 * scene.Error(scene.smoothed)) << frame_s;
+  }
+}
+
+TEST(RestoreShake, LeavesAloneWhatTellsNothing) {
+  ThreadPool pool(1);
+  const ShakyTracks slow(0.1, 0.002, 0.04);
+  Tracks restored = slow.smoothed;
+  RestoreShake(slow.camera, slow.half_windows_s, &pool, &restored);
+  for (std::size_t i = 0; i < restored.size(); ++i) ASSERT_EQ(restored[i].x, slow.smoothed[i].x);
+  // A gap of an hour, equal stamps, a window longer than any.
+  Tracks few = {{1, 0, 100, 100}, {1, 0, 101, 100}, {1, 3600 * kNsPerSecond, 102, 100}, {2, 3600 * kNsPerSecond, 5, 5}};
+  const std::vector<float> windows(few.size(), 1.0f);
+  RestoreShake(slow.camera, windows, &pool, &few);
+  EXPECT_EQ(few[2].x, 102);
+}
+
 TEST(RestoreShake, HardlyDisturbsASteadyCamera) {
   const ShakyTracks scene(0.1, 0.0);
   ThreadPool pool(1);
@@ -97,6 +119,7 @@ TEST(RestoreShake, IsTheSameForAnyNumberOfThreadsAndLeavesInstantsAlone) {
     ASSERT_EQ(a[i].x, b[i].x);
     ASSERT_EQ(a[i].y, b[i].y);
     ASSERT_EQ(c[i].x, scene.smoothed[i].x);
+    ASSERT_EQ(c[i].y, scene.smoothed[i].y);
   }
   Tracks nothing;
   RestoreShake(scene.camera, {}, &one, &nothing);

@@ -16,7 +16,10 @@ TEST(DensityMap, VotesAreBilinearAndLoseNothingInside) {
   EXPECT_FLOAT_EQ(cell(0, -2), 2.0f * 0.75f * 0.5f);
   EXPECT_FLOAT_EQ(cell(1, -1), 2.0f * 0.25f * 0.5f);
   map.Vote(5.5f, 0.0f, 0, 1.0f);
-  map.Vote(std::nanf(""), 0.0f, 0, 1.0f);
+  for (const float far : {std::nanf(""), INFINITY, -INFINITY, 1e10f, -1e10f}) {
+    map.Vote(far, 0.0f, 0, 1.0f);
+    map.Vote(0.0f, far, 0, 1.0f);
+  }
   EXPECT_FLOAT_EQ(static_cast<float>(map.Total()), 2.0f);
 }
 
@@ -81,7 +84,10 @@ TEST(AssociationField, MeanShiftOfOnePointLeadsBackToIt) {
     EXPECT_NEAR(pull[2] / pull[0], -3.0f - y, 0.25f);
   }
   EXPECT_LT(field.At(-12.0f, 12.0f, 0)[0], 0.01f);
-  EXPECT_EQ(field.At(40.0f, 0.0f, 0)[0], 0.0f);
+  for (const float far : {40.0f, INFINITY, -INFINITY, 1e10f, std::nanf("")}) {
+    EXPECT_EQ(field.At(far, 0.0f, 0)[0], 0.0f);
+    EXPECT_EQ(field.At(0.0f, far, 0)[0], 0.0f);
+  }
 }
 
 TEST(AssociationField, WeighsTheCentreMost) {

@@ -85,6 +85,49 @@ TEST(EgoMotion, IsUnknownWithoutEnoughFlowsOrWhereTheyContradict) {
   EXPECT_TRUE(motion.SlopeOf({100, 100}, Matrix2d::Identity()).isZero());
 }
 
+TEST(EgoMotion, FollowsAChangeOfDirection) {
+  Mover mover;
+  EgoMotion motion(mover.camera);
+  motion.Update(Flows(mover, 80, 2.0, 3));
+  mover.velocity = {4.0, 0.0, 0.3};
+  motion.Update(Flows(mover, 80, 2.0, 3));
+  ASSERT_TRUE(motion.known());
+  EXPECT_LT(AngleDeg(motion.direction(), mover.velocity), 2.0);
+}
+
+TEST(EgoMotion, HasNoDirectionWhereTheCameraStandsOrTurns) {
+  Mover mover;
+  mover.velocity.setZero();
+  EgoMotion motion(mover.camera);
+  motion.Update(Flows(mover, 80, 0.5, 3));
+  EXPECT_FALSE(motion.known());
+  mover.turn_rate.setZero();
+  motion.Update(Flows(mover, 80, 0.5, 3));
+  EXPECT_FALSE(motion.known());
+}
+
+TEST(EgoMotion, SaysNothingWhereTheLensHasNoInverse) {
+  // Barrel distortion so strong that the corners of the image lie outside the model.
+  Calibration calibration = MvsecDavis346();
+  calibration.distortion = Distortion::kRadTan;
+  calibration.coefficients = {-0.45, 0.0, 0.0, 0.0, 0.0};
+  Mover mover;
+  mover.camera = Camera(calibration);
+  ASSERT_FALSE(mover.camera.Undistort({2, 2}));
+  EgoMotion motion(mover.camera);
+  auto samples = Flows(mover, 80, 0.0, 3);
+  samples.push_back({{2, 2}, {-100, -80}});
+  motion.Update(samples);
+  ASSERT_TRUE(motion.known());
+  for (const Vector2d& pixel : {Vector2d(2, 2), Vector2d(-3, -3), Vector2d(360, 270), Vector2d(173, 130)}) {
+    const PatchFlow patch = motion.At({pixel, {100, 80}}, {0.01, 0.0});
+    EXPECT_TRUE(patch.rate.allFinite() && patch.bend.allFinite() && patch.acceleration.allFinite());
+    EXPECT_LT(patch.rate.norm(), 20.0) << pixel.transpose();
+    EXPECT_TRUE(motion.SlopeOf(pixel, Matrix2d::Identity()).allFinite());
+    motion.Allows({pixel, {100, 80}});
+  }
+}
+
 TEST(EgoMotion, AllowsOnlyWhatARestingPointMayDo) {
   Mover mover;
   mover.turn_rate.setZero();

@@ -49,7 +49,7 @@ class EventHistory {
 
   /// The latest stamp from which on there are `count` events before `end`, or the oldest event's if there are not so
   /// many.
-  TimeNs BeginOfNewest(TimeNs end, std::size_t count) const;
+  TimeNs BeginOfNewest(TimeNs begin, TimeNs end, std::size_t count) const;
 
   /// Calls visit(x, y, t, polarity) for every event of [begin, end), tile by tile, in each by time.
   template <typename Visitor>

@@ -20,6 +20,7 @@ namespace evo {
 /// with a smooth path s_i, of which fourth differences over time leave next to nothing. phi follows from those of all
 /// tracks by robust linear least squares, and each position moves by J_i (phi - K_i phi).
 ///
+/// Frames must be evenly spaced; where they are more than 25 ms apart they cannot show a shake and nothing changes.
 /// `half_windows_s`: half of the window of each observation, s; 0: of an instant. Every few seconds are solved for
 /// themselves.
 void RestoreShake(const Camera& camera, std::span<const float> half_windows_s, ThreadPool* pool, Tracks* tracks);

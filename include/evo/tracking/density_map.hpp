@@ -30,9 +30,10 @@ class DensityMap {
   void Vote(float x, float y, int plane, float weight) {
     const float column = x + static_cast<float>(radius_);
     const float row = y + static_cast<float>(radius_);
+    const auto last = static_cast<float>(side() - 1);
+    if (!(column >= 0.0f && row >= 0.0f && column < last && row < last)) return;
     const int c = static_cast<int>(column);
     const int r = static_cast<int>(row);
-    if (!(column >= 0.0f && row >= 0.0f) || c >= side() - 1 || r >= side() - 1) return;
     const float fx = column - static_cast<float>(c);
     const float fy = row - static_cast<float>(r);
     float* cell = cells_.data() + (plane * side() + r) * side() + c;
@@ -67,9 +68,10 @@ class AssociationField {
   Pull At(float x, float y, int plane) const {
     const float column = x + static_cast<float>(radius_);
     const float row = y + static_cast<float>(radius_);
+    const auto last = static_cast<float>(side_ - 1);
+    if (!(column >= 0.0f && row >= 0.0f && column < last && row < last)) return Pull::Zero();
     const int c = static_cast<int>(column);
     const int r = static_cast<int>(row);
-    if (!(column >= 0.0f && row >= 0.0f) || c >= side_ - 1 || r >= side_ - 1) return Pull::Zero();
     const float fx = column - static_cast<float>(c);
     const float fy = row - static_cast<float>(r);
     const Pull* cell = table_.data() + (plane * side_ + r) * side_ + c;

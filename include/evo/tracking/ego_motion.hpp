@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 #include <vector>
 
 #include "evo/tracking/flow_field.hpp"
@@ -27,7 +26,7 @@ class EgoMotion {
 
   /// Finds the motion from the flows of features, by iteratively reweighted Gauss-Newton from the last motion on.
   void Update(const std::vector<FlowSample>& features);
-  /// Whether the flows determined a motion.
+  /// Whether the flows determined a motion with a direction.
   bool known() const { return known_; }
   const Eigen::Vector3d& direction() const { return direction_; }
   const Eigen::Vector3d& turn_rate() const { return turn_rate_; }  ///< of the world about the camera, rad/s
@@ -44,8 +43,11 @@ class EgoMotion {
   Eigen::Vector2d Away(const PixelGeometry& pixel) const {
     return pixel.by_normalized * (direction_.z() * pixel.normalized - direction_.head<2>());
   }
-  /// The sum of squares that is left, with the usual size of a residual.
+  /// Returns the mean of the robust loss that is left, from 0 to 1.
   double Refine(const std::vector<FlowSample>& features, const std::vector<PixelGeometry>& pixels);
+
+  /// Chooses the sign of the direction, or says that there is none.
+  void Orient(const std::vector<FlowSample>& features, const std::vector<PixelGeometry>& pixels);
 
   LensGrid lens_;
   bool known_ = false;

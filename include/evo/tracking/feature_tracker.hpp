@@ -69,7 +69,8 @@ class FeatureTracker : public Tracker {
   EgoMotion ego_motion_;
   FlowField flow_field_;
   RefillPolicy refill_;
-  double usual_information_ = 0.0;  // of features at birth
+  double usual_information_ = 0.0;  // of features at birth, those included that were not good enough
+  std::int64_t births_ = 0;         // that it is the mean of
   std::vector<TrackedFeature> features_;
   std::int64_t next_id_ = 0;
   std::optional<TimeNs> last_;

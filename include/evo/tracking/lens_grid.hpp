@@ -22,16 +22,11 @@ class LensGrid {
 
   explicit LensGrid(const Camera& camera);
 
-  int width() const { return width_; }
-  int height() const { return height_; }
   double focal_px() const { return focal_px_; }
-  /// Of the nearest grid point, but for `normalized`, which is extrapolated to `pixel`. Pixels off the sensor are taken
-  /// to its edge.
+  /// Of the nearest grid point, but for `normalized`, which is extrapolated from it to `pixel`.
   PixelGeometry At(const Eigen::Vector2d& pixel) const;
 
  private:
-  int width_;
-  int height_;
   double focal_px_;
   int columns_;
   int rows_;

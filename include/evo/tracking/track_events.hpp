@@ -22,7 +22,7 @@ struct TrackingResult {
 /// What an observer of the tracker sees after each event frame, to draw it.
 struct TrackingView {
   const EventHistory& history;
-  const Tracks& tracks;  ///< so far
+  const Tracks& tracks;  ///< so far, before shake is given back
   TimeNs t;
 };
 

@@ -35,7 +35,7 @@ struct TrackerOptions {
 
   // Expectation maximisation.
   double flow_sigma_px = 1.5;    ///< soft association of events among themselves (EM 1), but for the last window
-  double coarse_sigma_px = 2.5;  ///< soft association to the template (EM 2), first pass
+  double coarse_sigma_px = 2.5;  ///< soft association to the template (EM 2) where the fine one fails: a jolt
   double fine_sigma_px = 1.0;    ///< the same, final pass; also of the last window of EM 1
   double outlier_share = 0.2;    ///< density of stray events over the patch's mean density of events
   int iterations = 20;           ///< at most, each EM
