@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kCoarseIterations = 6;
 constexpr int kNewbornFrames = 5;      // until then a feature has to prove itself
+constexpr double kSlowdown = 0.9;      // of a feature without events, from frame to frame
 constexpr double kSlopeGain = 0.1;     // share of what one frame tells about the slope of a feature's plane
 constexpr double kSteepest = 1e-3;     // such a slope for a flow of 1 px/s, 1/px^2
 constexpr double kRebaseBend = 0.25;   // or when depth varies by this share from its centre to its edge
@@ -96,7 +97,7 @@ bool FeatureTracker::Align(const EventHistory& history, TimeNs t, TrackedFeature
   if (gather() < static_cast<std::size_t>(options_.fewest_events)) {
     feature->half_window = std::min(2 * feature->half_window, FromSeconds(0.5 * options_.longest_window_s));
     const int fewest = feature->frames < kNewbornFrames ? options_.fewest_events : options_.fewest_events_alive;
-    if (gather() < static_cast<std::size_t>(fewest)) return false;
+    if (gather() < static_cast<std::size_t>(fewest)) return Rest(start, position, feature);
   }
   events.Thin(static_cast<std::size_t>(options_.most_events));
 
@@ -104,7 +105,10 @@ bool FeatureTracker::Align(const EventHistory& history, TimeNs t, TrackedFeature
   if (!Fit(events, *feature, false, &motion)) {
     // A jolt: the prediction may lie beyond the fine association's reach.
     motion = start;
-    if (!Fit(events, *feature, true, &motion)) return false;
+    if (!Fit(events, *feature, true, &motion)) {
+      const bool is_noise = events.size() < static_cast<std::size_t>(options_.fewest_events);
+      return is_noise && Rest(start, position, feature);
+    }
   }
   feature->position = position + motion.offset;
   feature->flow = motion.flow;
@@ -112,6 +116,16 @@ bool FeatureTracker::Align(const EventHistory& history, TimeNs t, TrackedFeature
   feature->perspective = motion.perspective;
   LearnSlope((motion.linear * start.linear.inverse() - Eigen::Matrix2d::Identity()) / step_s, feature);
   UpdateTemplate(events, motion, feature);
+  return true;
+}
+
+bool FeatureTracker::Rest(const PatchMotion& predicted, const Eigen::Vector2d& position,
+                          TrackedFeature* feature) const {
+  if (feature->frames < kNewbornFrames || predicted.flow.norm() > options_.resting_flow_px_s) return false;
+  feature->position = position;
+  feature->flow = kSlowdown * predicted.flow;
+  feature->linear = predicted.linear;
+  feature->perspective = predicted.perspective;
   return true;
 }
 

@@ -20,6 +20,8 @@ void Register(Parameters& parameters, TrackerOptions& o) {
                  "in the window of a new feature, or of a patch that tells the flow");
   parameters.Add("tracker.fewest_events_alive", &o.fewest_events_alive, 5, 10000,
                  "lost with fewer in a doubled window");
+  parameters.Add("tracker.resting_flow_px_s", &o.resting_flow_px_s, 0.0, 1000.0,
+                 "a feature that moves no faster stays without events (px/s)");
   parameters.Add("tracker.most_events", &o.most_events, 50, 1000000, "in a patch's window: of more, an even sample");
   parameters.Add("tracker.flow_sigma_px", &o.flow_sigma_px, 0.3, 10.0, "soft association, first flow (px)");
   parameters.Add("tracker.coarse_sigma_px", &o.coarse_sigma_px, 0.3, 10.0,

@@ -96,6 +96,34 @@ TEST(TrackEvents, PositionsAreThoseAtTheirStamp) {
   }
 }
 
+TEST(TrackEvents, FeaturesOutliveAStop) {
+  // To the right, to rest at 0.5 s, and on from 0.9 s: what stands still makes no events.
+  const auto moved = [](double t) {
+    constexpr double kFast = 120.0;  // px/s
+    const auto ramp = [](double s) { return s < 0.0 ? 0.0 : s < 0.2 ? 2.5 * s * s : 0.1 + s - 0.2; };
+    return Vector2d(kFast * (t - ramp(t - 0.3) + ramp(t - 0.9)), 0.0);
+  };
+  const EventColumns all = CrossScene(60, 4).Events(moved, 1.2, 1000.0);
+  EventColumns events;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const double t = ToSeconds(all.t[i]);
+    const double speed = (moved(t + 0.001) - moved(t - 0.001)).norm() / 0.002;
+    if (speed > 10.0) events.push_back(all.t[i], all.x[i], all.y[i], all.polarity[i]);
+  }
+  std::map<std::int64_t, std::vector<TrackObservation>> tracks;
+  for (const auto& observation : TrackAll(events, 2).tracks) tracks[observation.id].push_back(observation);
+  std::vector<double> errors;
+  for (const auto& [id, track] : tracks) {
+    if (ToSeconds(track.front().t) > 0.4 || ToSeconds(track.back().t) < 1.05) continue;
+    const Vector2d shift(track.back().x - track.front().x, track.back().y - track.front().y);
+    errors.push_back((shift - (moved(ToSeconds(track.back().t)) - moved(ToSeconds(track.front().t)))).norm());
+    for (std::size_t i = 1; i < track.size(); ++i) EXPECT_EQ(track[i].t - track[i - 1].t, FromSeconds(0.02));
+  }
+  ASSERT_GE(errors.size(), 5u);
+  std::ranges::sort(errors);
+  EXPECT_LT(errors[errors.size() / 2], 0.5);
+}
+
 TEST_F(TrackEventsTest, MostTracksOutliveTheTurn) {
   std::map<std::int64_t, int> count;
   for (const auto& observation : result->tracks) ++count[observation.id];

@@ -49,6 +49,9 @@ class FeatureTracker : public Tracker {
   /// How a feature probably lies in the sensor `step_s` after the last frame, relative to the `position` returned.
   PatchMotion Predict(const TrackedFeature& feature, double step_s, Eigen::Vector2d* position) const;
   bool Align(const EventHistory& history, TimeNs t, TrackedFeature* feature) const;
+  /// A feature that hardly moves makes no events, as when the car stops: it stays where it is predicted to be. False if
+  /// it moves too fast for that.
+  bool Rest(const PatchMotion& predicted, const Eigen::Vector2d& position, TrackedFeature* feature) const;
   /// Aligns `events` to the feature's template from `motion`; false if they do not fit it.
   bool Fit(const LocalEvents& events, const TrackedFeature& feature, bool coarse_first, PatchMotion* motion) const;
   /// `unexpected_rate`: by how much the patch changed faster than its plane's slope made expect, 1/s.

@@ -29,9 +29,10 @@ struct TrackerOptions {
   double window_motion_px = 4.0;  ///< the flow moves the feature this far within its window
   double shortest_window_s = 0.004;
   double longest_window_s = 0.08;
-  int fewest_events = 50;        ///< in a new feature's window
-  int fewest_events_alive = 15;  ///< lost with fewer in a window twice as long
-  int most_events = 400;         ///< in a patch's window: of more, an even sample is taken
+  int fewest_events = 50;           ///< in a new feature's window
+  int fewest_events_alive = 15;     ///< lost with fewer in a window twice as long,
+  double resting_flow_px_s = 20.0;  ///< unless it moves no faster than this: then it stays without events
+  int most_events = 400;            ///< in a patch's window: of more, an even sample is taken
 
   // Expectation maximisation.
   double flow_sigma_px = 1.5;    ///< soft association of events among themselves (EM 1), but for the last window
