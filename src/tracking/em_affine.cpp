@@ -2,7 +2,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -88,7 +87,8 @@ void TemplatePoints::Update(const LocalEvents& events, const PatchMotion& motion
     const float y0 = y - dt * (rate(1, 0) * x + rate(1, 1) * y + bent * y);
     const float a = inverse(0, 0) * x0 + inverse(0, 1) * y0;
     const float b = inverse(1, 0) * x0 + inverse(1, 1) * y0;
-    const float nearer = 1.0f / std::max(kFarthest, 1.0f - perspective.x() * a - perspective.y() * b);
+    const float depth = 1.0f - perspective.x() * a - perspective.y() * b;
+    const float nearer = 1.0f / (depth > kFarthest ? depth : kFarthest);
     out_u[i] = a * nearer;
     out_v[i] = b * nearer;
   }
