@@ -13,8 +13,8 @@ constexpr int kNewbornFrames = 5;      // until then a feature has to prove itse
 constexpr double kSlowdown = 0.9;      // of a feature without events, from frame to frame
 constexpr double kSlopeGain = 0.1;     // share of what one frame tells about the slope of a feature's plane
 constexpr double kSteepest = 1e-3;     // such a slope for a flow of 1 px/s, 1/px^2
-constexpr double kRebaseBend = 0.25;   // or when depth varies by this share from its centre to its edge
-constexpr double kRebaseScale = 1.25;  // re-sample the template when the patch has grown or shrunk this much
+constexpr double kRebaseScale = 1.25;  // re-sample the template when the patch has grown or shrunk this much,
+constexpr double kRebaseBend = 0.25;   // or its depth varies by this share from its centre to its edge
 
 }  // namespace
 

@@ -59,7 +59,8 @@ struct TrackerOptions {
   double corner_closest_px = 6.0;   ///< the same where that one leaves room for too few
   double corner_share = 0.02;       ///< weakest corner accepted, as a share of a strong one (95th percentile)
   double corner_window_motion_px = 3.0;
-  /// Of an event about the position of a new feature, as a share of the usual: it must neither slide nor blur.
+  /// Of an event about the position of a new feature, as a share of the mean over all that were tried: its pattern must
+  /// neither slide nor blur. About half of them are refused at 1.
   double smallest_information = 0.95;
   double fewest_cells = 8.0;  ///< px that a template's events fill: a hot pixel fills one
 
