@@ -201,7 +201,7 @@ class ShakeEstimator {
 }  // namespace
 
 void RestoreShake(const Camera& camera, std::span<const float> half_windows_s, ThreadPool* pool, Tracks* tracks) {
-  if (tracks->empty()) return;
+  if (std::ranges::all_of(half_windows_s, [](float half) { return half == 0.0f; })) return;
   const LensGrid lens(camera);
   const Tracks smoothed = *tracks;
   const auto index_of = [&](TimeNs t) {

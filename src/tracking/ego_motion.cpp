@@ -30,7 +30,7 @@ Eigen::Matrix<double, 3, 2> Tangents(const Eigen::Vector3d& v) {
   return tangents;
 }
 
-bool IsUnknown(const PixelGeometry& pixel) { return pixel.by_normalized.isZero(0.0); }
+double UsualError(const Eigen::Vector2d& flow) { return kSmallestErrorPxS + kUsualError * flow.norm(); }
 
 }  // namespace
 
@@ -42,13 +42,13 @@ double EgoMotion::Refine(const std::vector<FlowSample>& features, const std::vec
     cost = 0.0;
     const Eigen::Matrix<double, 3, 2> tangents = Tangents(direction_);
     for (std::size_t i = 0; i < features.size(); ++i) {
-      if (IsUnknown(pixels[i])) continue;
+      if (!pixels[i].known()) continue;
       // What is left of the flow across the line along which translation moves the point.
-      const Eigen::Vector2d flow = features[i].flow - pixels[i].by_rotation * turn_rate_;
+      const Eigen::Vector2d flow = WithoutTurn(pixels[i], features[i].flow);
       const Eigen::Vector2d away = Away(pixels[i]);
       const double length = std::max(away.norm(), 1e-3 * lens_.focal_px());
       const Eigen::Vector2d across(-away.y() / length, away.x() / length);
-      const double usual = kSmallestErrorPxS + kUsualError * features[i].flow.norm();
+      const double usual = UsualError(features[i].flow);
       const double residual = across.dot(flow) / usual;
       const double weight = 1.0 / (1.0 + residual * residual);
       cost += (1.0 - weight) / static_cast<double>(features.size());
@@ -106,9 +106,9 @@ void EgoMotion::Update(const std::vector<FlowSample>& features) {
 void EgoMotion::Orient(const std::vector<FlowSample>& features, const std::vector<PixelGeometry>& pixels) {
   std::size_t departing = 0, nearing = 0;
   for (std::size_t i = 0; i < features.size(); ++i) {
-    const Eigen::Vector2d flow = features[i].flow - pixels[i].by_rotation * turn_rate_;
+    const Eigen::Vector2d flow = WithoutTurn(pixels[i], features[i].flow);
     const double along = Away(pixels[i]).normalized().dot(flow);
-    const double usual = 2.0 * (kSmallestErrorPxS + kUsualError * features[i].flow.norm());
+    const double usual = 2.0 * UsualError(features[i].flow);
     if (along > usual) ++departing;
     if (along < -usual) ++nearing;
   }
@@ -121,7 +121,7 @@ PatchFlow EgoMotion::At(const FlowSample& feature, const Eigen::Vector2d& slope)
   if (!known_) return {};
   const PixelGeometry pixel = lens_.At(feature.position);
   const Eigen::Vector2d away = Away(pixel);
-  const Eigen::Vector2d flow = feature.flow - pixel.by_rotation * turn_rate_;
+  const Eigen::Vector2d flow = WithoutTurn(pixel, feature.flow);
   const double inverse_depth = std::max(0.0, away.dot(flow)) / (away.squaredNorm() + kNearPx * kNearPx);
   PatchFlow patch;
   patch.acceleration = 2.0 * inverse_depth * direction_.z() * flow;
@@ -129,7 +129,7 @@ PatchFlow EgoMotion::At(const FlowSample& feature, const Eigen::Vector2d& slope)
   for (int axis = 0; axis < 2; ++axis) {
     const Eigen::Vector2d step = kStep * Eigen::Vector2d::Unit(axis);
     const PixelGeometry there = lens_.At(feature.position + step), back = lens_.At(feature.position - step);
-    if (IsUnknown(there) || IsUnknown(back)) return {};
+    if (!there.known() || !back.known()) return {};
     const auto plane_flow = [&](const PixelGeometry& at, const Eigen::Vector2d& from_centre) -> Eigen::Vector2d {
       return at.by_rotation * turn_rate_ + (inverse_depth + slope.dot(from_centre)) * Away(at);
     };
@@ -143,7 +143,7 @@ bool EgoMotion::Allows(const FlowSample& feature) const {
   if (!known_) return true;
   const PixelGeometry pixel = lens_.At(feature.position);
   const Eigen::Vector2d away = Away(pixel).normalized();
-  const Eigen::Vector2d flow = feature.flow - pixel.by_rotation * turn_rate_;
+  const Eigen::Vector2d flow = WithoutTurn(pixel, feature.flow);
   const double across = away.x() * flow.y() - away.y() * flow.x();
   const double most = kLargestErrorPxS + kLargestError * feature.flow.norm();
   return std::abs(across) <= most && away.dot(flow) >= -most;

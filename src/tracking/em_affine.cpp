@@ -12,8 +12,7 @@ namespace {
 constexpr double kSmallestStep = 0.01;  // px, of the offset; a few times that at the patch's and the window's edge
 // The template has an edge of some width itself, so a plain M step closes only part of the gap.
 constexpr double kOverRelaxation = 1.5;
-constexpr float kFarthest =
-    0.2f;  // depth of the patch's centre over that of its farthest points; beyond is the horizon
+constexpr float kFarthest = 0.2f;  // depth of the patch's centre over that of its farthest points
 
 using Design = Eigen::Matrix4d;                  // over (1, dt / half window, u / radius, v / radius)
 using Correction = Eigen::Matrix<double, 4, 2>;  // the same rows, for x and y

@@ -29,13 +29,9 @@ double SmallestInformation(const DensityMap& events) {
 }  // namespace
 
 void FeatureTracker::Refill(const EventHistory& history, TimeNs t) {
-  std::vector<FlowSample> samples;
   std::vector<Eigen::Vector2d> taken;
-  for (const auto& feature : features_) {
-    samples.push_back({feature.position, feature.flow});
-    taken.push_back(feature.position);
-  }
-  flow_field_.Update(history, t, samples, pool_);
+  for (const auto& feature : features_) taken.push_back(feature.position);
+  flow_field_.Update(history, t, Flows(), pool_);
   const cv::Mat image = CorrectedEventImage(history, t, flow_field_, options_.corner_window_motion_px, options_, pool_);
   const double fewest_events = options_.fewest_events * options_.corner_window_motion_px / options_.window_motion_px;
   const auto missing = static_cast<std::size_t>(options_.features) - features_.size();

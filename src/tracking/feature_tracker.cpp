@@ -40,9 +40,7 @@ void FeatureTracker::Process(const EventHistory& history, TimeNs t) {
     }
     features_.erase(features_.begin() + static_cast<std::ptrdiff_t>(kept), features_.end());
   }
-  std::vector<FlowSample> samples;
-  for (const auto& feature : features_) samples.push_back({feature.position, feature.flow});
-  if (options_.ego_motion) ego_motion_.Update(samples);
+  if (options_.ego_motion) ego_motion_.Update(Flows());
   last_ = t;
   detected_ = refill_.IsDue(features_.size());
   if (detected_) Refill(history, t);
@@ -54,6 +52,12 @@ Tracks FeatureTracker::Observations() const {
     observations.push_back({feature.id, *last_, feature.position.x(), feature.position.y()});
   }
   return observations;
+}
+
+std::vector<FlowSample> FeatureTracker::Flows() const {
+  std::vector<FlowSample> flows;
+  for (const auto& feature : features_) flows.push_back({feature.position, feature.flow});
+  return flows;
 }
 
 std::vector<float> FeatureTracker::HalfWindowsS() const {

@@ -43,7 +43,7 @@ PixelGeometry LensGrid::At(const Eigen::Vector2d& pixel) const {
   const int column = std::clamp(static_cast<int>(std::lround(pixel.x() / kSpacingPx)), 0, columns_ - 1);
   const int row = std::clamp(static_cast<int>(std::lround(pixel.y() / kSpacingPx)), 0, rows_ - 1);
   PixelGeometry geometry = points_[static_cast<std::size_t>(row * columns_ + column)];
-  if (geometry.by_normalized.isZero(0.0)) return geometry;
+  if (!geometry.known()) return geometry;
   geometry.normalized += geometry.by_normalized.inverse() * (pixel - Eigen::Vector2d(column, row) * kSpacingPx);
   return geometry;
 }

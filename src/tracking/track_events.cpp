@@ -83,7 +83,7 @@ TrackingResult TrackEvents(EventReader* reader, const Camera& camera, const Trac
         ErrorKind::kNothingToDo,
         "the events span less than two event frames; choose a longer interval or a smaller tracker.frame_interval_s");
   }
-  if (options.restore_shake && options.method == "em") RestoreShake(camera, half_windows, pool, &result.tracks);
+  if (options.restore_shake) RestoreShake(camera, half_windows, pool, &result.tracks);
   DropLoneObservations(&result.tracks);
   return result;
 }

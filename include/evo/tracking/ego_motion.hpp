@@ -43,6 +43,10 @@ class EgoMotion {
   Eigen::Vector2d Away(const PixelGeometry& pixel) const {
     return pixel.by_normalized * (direction_.z() * pixel.normalized - direction_.head<2>());
   }
+  /// What the camera's translation adds to a flow, px/s.
+  Eigen::Vector2d WithoutTurn(const PixelGeometry& pixel, const Eigen::Vector2d& flow) const {
+    return flow - pixel.by_rotation * turn_rate_;
+  }
   /// Returns the mean of the robust loss that is left, from 0 to 1.
   double Refine(const std::vector<FlowSample>& features, const std::vector<PixelGeometry>& pixels);
 

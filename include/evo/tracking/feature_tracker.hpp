@@ -44,6 +44,7 @@ class FeatureTracker : public Tracker {
   bool detected() const override { return detected_; }
 
  private:
+  std::vector<FlowSample> Flows() const;
   /// False if the feature is lost.
   bool Track(const EventHistory& history, TimeNs t, TrackedFeature* feature) const;
   /// How a feature probably lies in the sensor `step_s` after the last frame, relative to the `position` returned.

@@ -7,15 +7,16 @@
 
 namespace evo {
 
-/// What the lens does around one pixel.
+/// What the lens does around one pixel. All zero where the lens model has no inverse.
 struct PixelGeometry {
+  bool known() const { return !by_normalized.isZero(0.0); }
+
   Eigen::Vector2d normalized = Eigen::Vector2d::Zero();                           ///< on the plane z = 1
   Eigen::Matrix2d by_normalized = Eigen::Matrix2d::Zero();                        ///< px for a unit on that plane
   Eigen::Matrix<double, 2, 3> by_rotation = Eigen::Matrix<double, 2, 3>::Zero();  ///< px for a turn of the world, rad
 };
 
-/// The same for every pixel, tabulated every few pixels, so that it may be asked for each feature in each frame. Zero
-/// where the lens model has no inverse.
+/// The same for every pixel, tabulated every few pixels, so that it may be asked for each feature in each frame.
 class LensGrid {
  public:
   static constexpr int kSpacingPx = 4;
