@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <numeric>
 
+#include "tracking/gaussian_kernel.hpp"
+
 namespace evo {
 
 namespace {
@@ -86,17 +88,6 @@ void AssociationField::WeighCentre() {
   }
 }
 
-void AssociationField::MakeKernel(double sigma_px) {
-  const int reach = std::min(radius_, static_cast<int>(std::ceil(3.0 * sigma_px)));
-  kernel_.resize(static_cast<std::size_t>(reach) + 1);
-  float sum = 0.0f;
-  for (int i = 0; i <= reach; ++i) {
-    kernel_[i] = static_cast<float>(std::exp(-0.5 * i * i / (sigma_px * sigma_px)));
-    sum += i ? 2.0f * kernel_[i] : kernel_[i];
-  }
-  for (float& k : kernel_) k /= sum;
-}
-
 void AssociationField::Convolve(const float* in, std::ptrdiff_t step, float* out) const {
   const auto reach = static_cast<std::ptrdiff_t>(kernel_.size()) - 1;
   for (int c = 0; c < width_; c += kBlock, in += kBlock, out += kBlock) {
@@ -128,7 +119,8 @@ void AssociationField::Build(const DensityMap& map, double sigma_px, double outl
   sigma_px_ = sigma_px;
   const int n = side_;
   width_ = (n + kBlock - 1) / kBlock * kBlock;
-  MakeKernel(sigma_px);
+  kernel_.resize(static_cast<std::size_t>(std::min(radius_, GaussianReach(sigma_px))) + 1);
+  FillGaussianKernel(sigma_px, kernel_);
   const auto cells = static_cast<std::size_t>(map.planes() * n * n);
   if (table_.size() != cells) {
     table_.assign(cells, Pull::Zero());  // the cells at the edge stay zero

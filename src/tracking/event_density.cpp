@@ -4,11 +4,12 @@
 #include <cmath>
 #include <span>
 
+#include "tracking/gaussian_kernel.hpp"
+
 namespace evo {
 
 namespace {
 
-constexpr double kKernelReach = 3.0;  // sigmas
 constexpr std::ptrdiff_t kBlock = 8;  // cells computed at a time
 using Block = Eigen::Array<float, kBlock, 1>;
 using BlockMap = Eigen::Map<const Block>;
@@ -34,15 +35,10 @@ EventDensity::EventDensity(int radius, int planes, double sigma)
       planes_(planes),
       half_variance_(static_cast<float>(0.5 * sigma * sigma)),
       longest_pull_(static_cast<float>(kLongestPullSigmas * sigma)),
-      kernel_(static_cast<std::size_t>(std::ceil(kKernelReach * sigma)) + 1),
+      kernel_(static_cast<std::size_t>(GaussianReach(sigma)) + 1),
       margin_(std::max<std::ptrdiff_t>(2, static_cast<std::ptrdiff_t>(kernel_.size()) - 1)),
       stride_(2 * radius + 1 + 2 * margin_) {
-  float sum = 0.0f;
-  for (std::size_t i = 0; i < kernel_.size(); ++i) {
-    kernel_[i] = static_cast<float>(std::exp(-0.5 * static_cast<double>(i * i) / (sigma * sigma)));
-    sum += i ? 2.0f * kernel_[i] : kernel_[i];
-  }
-  for (float& k : kernel_) k /= sum;
+  FillGaussianKernel(sigma, kernel_);
   plane_cells_ = stride_ * stride_ + kBlock;  // the last block may reach beyond
   votes_.resize(static_cast<std::size_t>(planes_ * plane_cells_));
   rows_.resize(votes_.size());

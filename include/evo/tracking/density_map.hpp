@@ -92,7 +92,6 @@ class AssociationField {
   Eigen::Matrix2d Information(const DensityMap& map) const;
 
  private:
-  void MakeKernel(double sigma_px);
   void WeighCentre();
   /// One row: the sum of kernel_[|i|] * in[c + i * step].
   void Convolve(const float* in, std::ptrdiff_t step, float* out) const;
