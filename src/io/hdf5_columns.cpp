@@ -13,8 +13,7 @@ namespace evo::hdf5 {
 namespace {
 
 constexpr std::size_t kBytes = sizeof(double);
-constexpr hsize_t kLargestChunkRows = 262144;  // larger chunks are read in parts, for which HDF5 keeps them decoded
-constexpr hsize_t kLargestOverhead = 1024;     // of what does not get smaller by deflating
+constexpr hsize_t kLargestOverhead = 1024;  // of what does not get smaller by deflating
 
 /// Elements [first, first + count) of `total` whose bytes are stored by their place: all first ones, all second ones...
 void Unshuffle(const std::uint8_t* planes, std::size_t total, std::size_t first, std::size_t count, double* values) {

@@ -12,6 +12,9 @@ namespace evo::hdf5 {
 /// are decoded here, straight into the columns: HDF5 would copy each of them several times. All else is left to HDF5.
 class ColumnReader {
  public:
+  /// Larger chunks are best read in parts of so many rows: HDF5 keeps them decoded meanwhile.
+  static constexpr hsize_t kLargestChunkRows = 262144;
+
   explicit ColumnReader(Dataset table);
 
   const Dataset& table() const { return table_; }

@@ -12,9 +12,8 @@ namespace evo {
 
 namespace {
 
-constexpr hsize_t kBlockRows = 65536;          // at least, in whole chunks
-constexpr hsize_t kLargestBlockRows = 262144;  // larger chunks are read in parts
-constexpr double kLargestNs = 9e18;            // what int64 holds
+constexpr hsize_t kBlockRows = 65536;  // at least, in whole chunks
+constexpr double kLargestNs = 9e18;    // what int64 holds
 constexpr double kCoarsestStampS = 1e-3;
 constexpr double kFirstEpochS = 5e8;  // 1985: a stamp counted from 1970 is told from one counted from zero
 constexpr double kLastEpochS = 8e9;   // 2223
@@ -106,7 +105,8 @@ void MvsecEvents::CheckResolution() const {
 
 hsize_t MvsecEvents::block_rows() const {
   const hsize_t chunk = std::max<hsize_t>(table().chunk_rows(), 1);
-  return chunk > kLargestBlockRows ? kLargestBlockRows : (kBlockRows + chunk - 1) / chunk * chunk;
+  constexpr hsize_t kLargest = hdf5::ColumnReader::kLargestChunkRows;
+  return chunk > kLargest ? kLargest : (kBlockRows + chunk - 1) / chunk * chunk;
 }
 
 bool MvsecEvents::InRange(double stamp) const {
