@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "evo/tracking/camera_motion.hpp"
 #include "evo/tracking/flow_field.hpp"
 #include "evo/tracking/lens_grid.hpp"
 
@@ -28,8 +29,8 @@ class EgoMotion {
   void Update(const std::vector<FlowSample>& features);
   /// Whether the flows determined a motion with a direction.
   bool known() const { return known_; }
-  const Eigen::Vector3d& direction() const { return direction_; }
-  const Eigen::Vector3d& turn_rate() const { return turn_rate_; }  ///< of the world about the camera, rad/s
+  const Eigen::Vector3d& direction() const { return motion_.direction; }
+  const Eigen::Vector3d& turn_rate() const { return motion_.turn_rate; }  ///< of the world about the camera, rad/s
 
   /// Of a plane whose inverse depth has the gradient `slope`, 1/(px s), where a feature has this flow.
   PatchFlow At(const FlowSample& feature, const Eigen::Vector2d& slope) const;
@@ -39,14 +40,6 @@ class EgoMotion {
   Eigen::Vector2d SlopeOf(const Eigen::Vector2d& position, const Eigen::Matrix2d& rate) const;
 
  private:
-  /// Image motion, px/s, of a point of inverse depth 1.
-  Eigen::Vector2d Away(const PixelGeometry& pixel) const {
-    return pixel.by_normalized * (direction_.z() * pixel.normalized - direction_.head<2>());
-  }
-  /// What the camera's translation adds to a flow, px/s.
-  Eigen::Vector2d WithoutTurn(const PixelGeometry& pixel, const Eigen::Vector2d& flow) const {
-    return flow - pixel.by_rotation * turn_rate_;
-  }
   /// Returns the mean of the robust loss that is left, from 0 to 1.
   double Refine(const std::vector<FlowSample>& features, const std::vector<PixelGeometry>& pixels);
 
@@ -55,8 +48,7 @@ class EgoMotion {
 
   LensGrid lens_;
   bool known_ = false;
-  Eigen::Vector3d direction_ = Eigen::Vector3d::UnitZ();
-  Eigen::Vector3d turn_rate_ = Eigen::Vector3d::Zero();
+  CameraMotion motion_;
 };
 
 }  // namespace evo
