@@ -141,9 +141,11 @@ class CornerSelection {
 
   const std::vector<Eigen::Vector2d>& found() const { return found_; }
 
-  /// Adds those of `corners`, strongest first, that are no nearer than `spacing_px` to others, until `count` are found.
-  /// Fills the emptiest buckets first: round n accepts only corners whose bucket holds fewer than n features.
-  void Add(const std::vector<Corner>& corners, std::size_t count, double spacing_px) {
+  /// Adds those of `corners`, strongest first, that are no nearer than `spacing_px` to others and that `fits` allows,
+  /// until `count` are found. Fills the emptiest buckets first: round n accepts only corners whose bucket holds fewer
+  /// than n features.
+  template <typename Fits>
+  void Add(const std::vector<Corner>& corners, std::size_t count, double spacing_px, const Fits& fits) {
     const double spacing2 = spacing_px * spacing_px;
     const int most = kBucketPx * kBucketPx / std::max(1, static_cast<int>(spacing2)) + 1;
     std::vector<char> used(corners.size(), 0);
@@ -157,6 +159,7 @@ class CornerSelection {
         if (std::ranges::any_of(occupied_, [&](const auto& o) { return (o - point).squaredNorm() < spacing2; })) {
           continue;
         }
+        if (!fits(corner)) continue;
         ++Bucket(corner.x, corner.y);
         occupied_.push_back(point);
         found_.push_back(point);
@@ -204,13 +207,14 @@ std::vector<Eigen::Vector2d> DetectCorners(const cv::Mat& image, const std::vect
   if (corners.empty()) return {};
   const auto strong = static_cast<std::size_t>((1.0 - kStrongCorner) * static_cast<double>(corners.size()));
   const auto weakest = static_cast<float>(options.corner_share * corners[strong].strength);
-  std::erase_if(corners, [&](const Corner& corner) {
-    return corner.strength < weakest ||
-           EventsAround(image, corner.x, corner.y, options.patch_radius_px) < fewest_events;
-  });
+  std::erase_if(corners, [&](const Corner& corner) { return corner.strength < weakest; });
+  // Asked only of corners that are tried: most never are.
+  const auto has_events = [&](const Corner& corner) {
+    return EventsAround(image, corner.x, corner.y, options.patch_radius_px) >= fewest_events;
+  };
   CornerSelection selection(image.cols, image.rows, taken);
   for (const double spacing_px : {options.corner_spacing_px, options.corner_closest_px}) {
-    selection.Add(corners, static_cast<std::size_t>(std::max(count, 0)), spacing_px);
+    selection.Add(corners, static_cast<std::size_t>(std::max(count, 0)), spacing_px, has_events);
   }
   return selection.found();
 }
