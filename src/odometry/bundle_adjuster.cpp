@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "odometry/bundle_equations.hpp"
@@ -16,6 +17,7 @@ constexpr double kBehindPx = 1e3;           // error of a point behind the camer
 constexpr double kSmallestDamping = 1e-12;  // long drives bend by tiny forces: any more would hold them
 constexpr double kRetryDamping = 1e-7;      // at least, after a step that did not help
 constexpr double kLargestDamping = 1e6;
+constexpr double kLargestMagnification = 10.0;
 constexpr int kSettleSteps = 3;
 constexpr double kSettleDamping = 1e-3;
 
@@ -41,47 +43,78 @@ std::vector<std::size_t> FirstObservations(const BundleProblem& problem) {
   return begin;
 }
 
-/// What the observations [begin, end) of one point cost.
-double PointCost(const BundleProblem& problem, double width, std::size_t begin, std::size_t end) {
-  if (begin == end) return 0.0;
-  double cost = 0.0;
+/// Of all observations.
+std::vector<InnovationStep> InnovationSteps(const BundleProblem& problem, double drift) {
+  std::vector<InnovationStep> steps;
+  std::vector<double> magnifications;
+  const auto begin = FirstObservations(problem);
+  for (std::size_t p = 0; p < problem.points.size(); ++p) {
+    magnifications.clear();
+    for (std::size_t i = begin[p]; i < begin[p + 1]; ++i) {
+      const BundlePoint& point = problem.points[p];
+      const SE3 T_cam_anchor =
+          problem.T_cam_world[problem.observations[i].frame] * problem.T_cam_world[point.anchor].Inverse();
+      const double depth_share = ScaledInCamera(T_cam_anchor, point.inverse_depth).z();  // of that at first
+      magnifications.push_back(1.0 / std::clamp(depth_share, 1.0 / kLargestMagnification, kLargestMagnification));
+    }
+    AppendInnovationSteps(drift, magnifications, &steps);
+  }
+  return steps;
+}
+
+/// Errors of the observations [begin, end) of one point, infinite behind the camera.
+void TrackErrors(const BundleProblem& problem, std::size_t begin, std::size_t end,
+                 std::vector<Eigen::Vector2d>* errors) {
+  errors->assign(end - begin, Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity()));
+  if (begin == end) return;
   const BundlePoint& point = problem.points[problem.observations[begin].point];
   const SE3 T_world_anchor = problem.T_cam_world[point.anchor].Inverse();
   for (std::size_t i = begin; i < end; ++i) {
     const auto& observation = problem.observations[i];
     const SE3 T_cam_anchor = problem.T_cam_world[observation.frame] * T_world_anchor;
-    Eigen::Vector2d error;
-    const bool visible = Error(T_cam_anchor, point.inverse_depth, observation, &error);
-    const double squared = visible ? error.squaredNorm() : kBehindPx * kBehindPx;
-    cost += CauchyCost(std::min(squared, kBehindPx * kBehindPx), width);
+    Error(T_cam_anchor, point.inverse_depth, observation, &(*errors)[i - begin]);
+  }
+}
+
+/// What the observations [begin, end) of one point cost.
+double PointCost(const BundleProblem& problem, const ErrorModel& model, std::size_t begin, std::size_t end) {
+  thread_local std::vector<Eigen::Vector2d> errors, innovations;
+  TrackErrors(problem, begin, end, &errors);
+  double cost = 0.0;
+  for (auto& error : errors) {
+    if (error.allFinite()) continue;
+    error.setZero();
+    cost += CauchyCost(kBehindPx * kBehindPx, model.loss_px);
+  }
+  Innovate(model.Steps(begin, end), errors, &innovations);
+  for (const auto& innovation : innovations) {
+    cost += CauchyCost(std::min(innovation.squaredNorm(), kBehindPx * kBehindPx), model.loss_px);
   }
   return cost;
 }
 
 /// A few damped steps of one point alone.
-double SettlePoint(double width, std::size_t begin, std::size_t end, BundleProblem* problem) {
+double SettlePoint(const ErrorModel& model, std::size_t begin, std::size_t end, BundleProblem* problem) {
+  thread_local TrackEquations track;
   BundlePoint& point = problem->points[problem->observations[begin].point];
-  const SE3 T_world_anchor = problem->T_cam_world[point.anchor].Inverse();
-  double cost = PointCost(*problem, width, begin, end);
+  double cost = PointCost(*problem, model, begin, end);
   double damping = kSettleDamping;
   for (int step = 0; step < kSettleSteps; ++step) {
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
     Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-    BundleJacobian jacobian;
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto& observation = problem->observations[i];
-      const SE3 T_cam_anchor = problem->T_cam_world[observation.frame] * T_world_anchor;
-      if (!Linearize(T_cam_anchor, point.inverse_depth, observation, &jacobian)) continue;
-      const double weight = CauchyWeight(jacobian.error.squaredNorm(), width);
-      normal.noalias() += weight * jacobian.by_point.transpose() * jacobian.by_point;
-      gradient.noalias() += weight * jacobian.by_point.transpose() * jacobian.error;
+    Eigen::Matrix<double, 2, 3> by_point;
+    track.Linearize(*problem, model, begin, end);
+    for (std::size_t k = 0; k < end - begin; ++k) {
+      const Eigen::Vector2d error = track.Weighted(k, &by_point);
+      normal.noalias() += track.sightings[k].by_point.transpose() * by_point;
+      gradient.noalias() += track.sightings[k].by_point.transpose() * error;
     }
     normal.diagonal() *= 1.0 + damping;
     normal.diagonal().array() += 1e-12;
     const Eigen::Vector3d old = point.inverse_depth;
     point.inverse_depth -= normal.ldlt().solve(gradient);
     point.inverse_depth.z() = std::max(point.inverse_depth.z(), 0.0);
-    const double stepped = PointCost(*problem, width, begin, end);
+    const double stepped = PointCost(*problem, model, begin, end);
     if (stepped < cost) {
       cost = stepped;
       damping *= 0.1;
@@ -95,16 +128,16 @@ double SettlePoint(double width, std::size_t begin, std::size_t end, BundleProbl
 
 /// All points' costs after a step. A point that the common step has made worse, one far away or nearly on the path,
 /// goes back and settles by itself, lest it hold up all the others.
-double CostAfterStep(const std::vector<BundlePoint>& old_points, double width, const std::vector<std::size_t>& begin,
-                     std::vector<double>* costs, BundleProblem* problem) {
+double CostAfterStep(const std::vector<BundlePoint>& old_points, const ErrorModel& model,
+                     const std::vector<std::size_t>& begin, std::vector<double>* costs, BundleProblem* problem) {
   double sum = 0.0;
   for (std::size_t p = 0; p < costs->size(); ++p) {
     if (begin[p] == begin[p + 1]) continue;
-    double cost = PointCost(*problem, width, begin[p], begin[p + 1]);
+    double cost = PointCost(*problem, model, begin[p], begin[p + 1]);
     if (cost > (*costs)[p]) {
       const BundlePoint stepped = std::exchange(problem->points[p], old_points[p]);
-      if (PointCost(*problem, width, begin[p], begin[p + 1]) > cost) problem->points[p] = stepped;
-      cost = SettlePoint(width, begin[p], begin[p + 1], problem);
+      if (PointCost(*problem, model, begin[p], begin[p + 1]) > cost) problem->points[p] = stepped;
+      cost = SettlePoint(model, begin[p], begin[p + 1], problem);
     }
     (*costs)[p] = cost;
     sum += cost;
@@ -160,15 +193,25 @@ bool Linearize(const SE3& T_cam_anchor, const Eigen::Vector3d& inverse_depth, co
 }
 
 std::vector<Eigen::Vector2d> BundleErrors(const BundleProblem& problem) {
-  std::vector<Eigen::Vector2d> errors(problem.observations.size());
-  for (std::size_t i = 0; i < errors.size(); ++i) {
-    const auto& observation = problem.observations[i];
-    const BundlePoint& point = problem.points[observation.point];
-    const SE3 T_cam_anchor = problem.T_cam_world[observation.frame] * problem.T_cam_world[point.anchor].Inverse();
-    if (Error(T_cam_anchor, point.inverse_depth, observation, &errors[i])) continue;
-    errors[i].setConstant(std::numeric_limits<double>::infinity());
+  std::vector<Eigen::Vector2d> errors, all;
+  const auto begin = FirstObservations(problem);
+  for (std::size_t p = 0; p < problem.points.size(); ++p) {
+    TrackErrors(problem, begin[p], begin[p + 1], &errors);
+    all.insert(all.end(), errors.begin(), errors.end());
   }
-  return errors;
+  return all;
+}
+
+std::vector<Eigen::Vector2d> BundleInnovations(const BundleProblem& problem, double drift) {
+  std::vector<Eigen::Vector2d> errors, innovations, all;
+  const auto begin = FirstObservations(problem);
+  const auto steps = InnovationSteps(problem, drift);
+  for (std::size_t p = 0; p < problem.points.size(); ++p) {
+    TrackErrors(problem, begin[p], begin[p + 1], &errors);
+    Innovate(std::span(steps).subspan(begin[p], begin[p + 1] - begin[p]), errors, &innovations);
+    all.insert(all.end(), innovations.begin(), innovations.end());
+  }
+  return all;
 }
 
 std::vector<int> BundleSkyline(const BundleProblem& problem) {
@@ -191,12 +234,12 @@ std::vector<int> BundleSkyline(const BundleProblem& problem) {
 
 BundleSummary AdjustBundle(const BundleOptions& options, BundleProblem* problem) {
   const auto begin = FirstObservations(*problem);
+  const ErrorModel model{InnovationSteps(*problem, options.drift), options.loss_px};
   std::vector<double> costs(problem->points.size());
-  for (std::size_t p = 0; p < costs.size(); ++p)
-    costs[p] = PointCost(*problem, options.loss_px, begin[p], begin[p + 1]);
+  for (std::size_t p = 0; p < costs.size(); ++p) costs[p] = PointCost(*problem, model, begin[p], begin[p + 1]);
   BundleSummary summary;
   summary.initial_cost = summary.final_cost = std::accumulate(costs.begin(), costs.end(), 0.0);
-  BundleEquations equations(*problem, options.loss_px, begin);
+  BundleEquations equations(*problem, model, begin);
   double damping = kSmallestDamping;
   Eigen::VectorXd pose_steps;
   std::vector<Eigen::Vector3d> point_steps;
@@ -209,7 +252,7 @@ BundleSummary AdjustBundle(const BundleOptions& options, BundleProblem* problem)
     while (damping <= kLargestDamping) {
       if (equations.Solve(damping, &pose_steps, &point_steps)) {
         Apply(pose_steps, point_steps, problem);
-        cost = CostAfterStep(old_points, options.loss_px, begin, &costs, problem);
+        cost = CostAfterStep(old_points, model, begin, &costs, problem);
         if (cost < summary.final_cost) break;
         problem->T_cam_world = old_poses;
         problem->points = old_points;

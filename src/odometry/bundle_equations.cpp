@@ -18,20 +18,56 @@ Eigen::Vector3d ScaleBaseline(const BundleProblem& problem) {
 
 }  // namespace
 
-BundleEquations::BundleEquations(const BundleProblem& problem, double loss_px, const std::vector<std::size_t>& begin)
+void TrackEquations::Linearize(const BundleProblem& problem, const ErrorModel& model, std::size_t begin,
+                               std::size_t end) {
+  const std::size_t count = end - begin;
+  sightings.resize(count);
+  errors_.resize(count);
+  weights_.resize(count);
+  if (count == 0) return;
+  const BundlePoint& point = problem.points[problem.observations[begin].point];
+  const SE3 T_world_anchor = problem.T_cam_world[point.anchor].Inverse();
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto& observation = problem.observations[begin + k];
+    const SE3 T_cam_anchor = problem.T_cam_world[observation.frame] * T_world_anchor;
+    const bool visible = evo::Linearize(T_cam_anchor, point.inverse_depth, observation, &sightings[k]);
+    if (!visible) sightings[k] = {};
+    weights_[k] = visible ? 1.0 : 0.0;
+    errors_[k] = sightings[k].error;
+  }
+  const auto steps = model.Steps(begin, end);
+  Innovate(steps, errors_, &innovations_);
+  for (std::size_t k = 0; k < count; ++k) weights_[k] *= CauchyWeight(innovations_[k].squaredNorm(), model.loss_px);
+  InformationOfErrors(steps, weights_, &information);
+}
+
+Eigen::Vector2d TrackEquations::Weighted(std::size_t i, Eigen::Matrix<double, 2, 3>* by_point) const {
+  Eigen::Vector2d error = Eigen::Vector2d::Zero();
+  by_point->setZero();
+  for (std::size_t j = 0; j < sightings.size(); ++j) {
+    const double weight = information(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(i));
+    if (weight == 0.0) continue;
+    error += weight * sightings[j].error;
+    *by_point += weight * sightings[j].by_point;
+  }
+  return error;
+}
+
+BundleEquations::BundleEquations(const BundleProblem& problem, const ErrorModel& model,
+                                 const std::vector<std::size_t>& begin)
     : problem_(problem),
-      width_(loss_px),
+      model_(model),
       begin_(begin),
       scale_length_(problem.scale_frame < 0 ? 1.0 : ScaleBaseline(problem).norm()),
-      reduced_(BundleSkyline(problem)),
-      pose_blocks_(static_cast<std::size_t>(reduced_.rows())),
+      poses_(BundleSkyline(problem)),
+      reduced_(poses_),
       cross_(problem.observations.size()),
       point_blocks_(problem.points.size()),
       inverses_(problem.points.size()),
       point_gradients_(problem.points.size()) {}
 
 void BundleEquations::Linearize() {
-  std::ranges::fill(pose_blocks_, BlockSkyline::Block::Zero());
+  poses_.SetZero();
   pose_gradient_ = Eigen::VectorXd::Zero(Eigen::Index{6} * reduced_.rows());
   for (std::size_t p = 0; p < problem_.points.size(); ++p) LinearizePoint(p);
   if (problem_.scale_frame >= problem_.fixed_frames) LinearizeScale();
@@ -44,39 +80,41 @@ void BundleEquations::LinearizeScale() {
   Eigen::Matrix<double, 1, 6> by_pose = Eigen::Matrix<double, 1, 6>::Zero();
   by_pose.head<3>() = kScalePrior / scale_length_ * t.transpose() / norm;
   const int pose = problem_.scale_frame - problem_.fixed_frames;
-  pose_blocks_[pose] += by_pose.transpose() * by_pose;
+  poses_.At(pose, pose) += by_pose.transpose() * by_pose;
   pose_gradient_.segment<6>(Eigen::Index{6} * pose) += by_pose.transpose() * kScalePrior * (norm / scale_length_ - 1.0);
 }
 
 void BundleEquations::LinearizePoint(std::size_t p) {
   point_blocks_[p].setZero();
   point_gradients_[p].setZero();
-  const BundlePoint& point = problem_.points[p];
-  const SE3 T_world_anchor = problem_.T_cam_world[point.anchor].Inverse();
-  BundleJacobian jacobian;
+  track_.Linearize(problem_, model_, begin_[p], begin_[p + 1]);
+  Eigen::Matrix<double, 2, 3> by_point;
   for (std::size_t i = begin_[p]; i < begin_[p + 1]; ++i) {
+    const std::size_t k = i - begin_[p];
+    const BundleJacobian& sighting = track_.sightings[k];
+    const Eigen::Vector2d error = track_.Weighted(k, &by_point);
+    point_blocks_[p].noalias() += sighting.by_point.transpose().lazyProduct(by_point);
+    point_gradients_[p].noalias() += sighting.by_point.transpose() * error;
     cross_[i].setZero();
-    const auto& observation = problem_.observations[i];
-    const SE3 T_cam_anchor = problem_.T_cam_world[observation.frame] * T_world_anchor;
-    if (!evo::Linearize(T_cam_anchor, point.inverse_depth, observation, &jacobian)) continue;
-    const double weight = CauchyWeight(jacobian.error.squaredNorm(), width_);
-    const Eigen::Matrix<double, 3, 2> weighted = weight * jacobian.by_point.transpose();
-    point_blocks_[p].noalias() += weighted.lazyProduct(jacobian.by_point);
-    point_gradients_[p].noalias() += weighted * jacobian.error;
-    const int pose = Pose(i);
-    if (pose < 0) continue;
-    const Eigen::Matrix<double, 6, 2> turned = weight * jacobian.by_pose.transpose();
-    pose_blocks_[pose].noalias() += turned.lazyProduct(jacobian.by_pose);
-    pose_gradient_.segment<6>(Eigen::Index{6} * pose).noalias() += turned * jacobian.error;
-    cross_[i].noalias() = turned.lazyProduct(jacobian.by_point);
+    const int row = Pose(i);
+    if (row < 0) continue;
+    const Eigen::Matrix<double, 6, 2> turned = sighting.by_pose.transpose();
+    pose_gradient_.segment<6>(Eigen::Index{6} * row).noalias() += turned * error;
+    cross_[i].noalias() = turned.lazyProduct(by_point);
+    for (std::size_t l = 0; l <= k; ++l) {
+      const double information = track_.information(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l));
+      const int column = Pose(begin_[p] + l);
+      if (information == 0.0 || column < 0) continue;
+      const Eigen::Matrix<double, 6, 2> weighted = information * turned;
+      poses_.At(row, column).noalias() += weighted.lazyProduct(track_.sightings[l].by_pose);
+    }
   }
 }
 
 bool BundleEquations::Solve(double lambda, Eigen::VectorXd* pose_steps, std::vector<Eigen::Vector3d>* point_steps) {
-  reduced_.SetZero();
+  reduced_ = poses_;
   Eigen::VectorXd right = -pose_gradient_;
   for (int i = 0; i < reduced_.rows(); ++i) {
-    reduced_.At(i, i) = pose_blocks_[i];
     reduced_.At(i, i).diagonal() *= 1.0 + lambda;
     reduced_.At(i, i).diagonal().array() += kSmallestEntry;
   }

@@ -2,10 +2,12 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "evo/odometry/block_skyline.hpp"
 #include "evo/odometry/bundle_adjuster.hpp"
+#include "evo/odometry/track_noise.hpp"
 
 namespace evo {
 
@@ -15,12 +17,37 @@ inline double CauchyCost(double squared, double width) {
 }
 inline double CauchyWeight(double squared, double width) { return 1.0 / (1.0 + squared / (width * width)); }
 
+/// What errors are thought to be like, and how much a large one counts.
+struct ErrorModel {
+  std::vector<InnovationStep> steps;  ///< of all observations
+  double loss_px;                     ///< Cauchy's width, of an innovation
+
+  std::span<const InnovationStep> Steps(std::size_t begin, std::size_t end) const {
+    return std::span(steps).subspan(begin, end - begin);
+  }
+};
+
+/// What one point's sightings say at the present values.
+struct TrackEquations {
+  std::vector<BundleJacobian> sightings;  ///< null behind the camera
+  Eigen::MatrixXd information;            ///< of their errors, one coordinate
+
+  /// `[begin, end)` are the observations of the point.
+  void Linearize(const BundleProblem& problem, const ErrorModel& model, std::size_t begin, std::size_t end);
+  /// The sums over all sightings j of information(i, j) times their error, and times their derivative by the point.
+  Eigen::Vector2d Weighted(std::size_t i, Eigen::Matrix<double, 2, 3>* by_point) const;
+
+ private:
+  std::vector<Eigen::Vector2d> errors_, innovations_;
+  std::vector<double> weights_;
+};
+
 /// The normal equations of a bundle problem at its present values, the points' part kept apart.
 class BundleEquations {
  public:
   /// `begin[p]` is the first observation of point p, `begin[p + 1]` the end of its observations. What is referred to
   /// must outlive this object. The present distance of the scale frame is the one that is held.
-  BundleEquations(const BundleProblem& problem, double loss_px, const std::vector<std::size_t>& begin);
+  BundleEquations(const BundleProblem& problem, const ErrorModel& model, const std::vector<std::size_t>& begin);
 
   void Linearize();
 
@@ -34,11 +61,12 @@ class BundleEquations {
   void EliminatePoint(std::size_t p, double lambda, Eigen::VectorXd* right);
 
   const BundleProblem& problem_;
-  double width_;
+  const ErrorModel& model_;
   const std::vector<std::size_t>& begin_;
   double scale_length_;
-  BlockSkyline reduced_;
-  std::vector<BlockSkyline::Block> pose_blocks_;
+  TrackEquations track_;
+  BlockSkyline poses_;    // the poses' part
+  BlockSkyline reduced_;  // the same without the points
   std::vector<Eigen::Matrix<double, 6, 3>> cross_;
   std::vector<Eigen::Matrix3d> point_blocks_;
   std::vector<Eigen::Matrix3d> inverses_;

@@ -27,16 +27,17 @@ double Median(std::vector<double> values) {
   return *middle;
 }
 
-/// Standard deviation of a coordinate of the sightings, from the median residual.
-double MeasureNoise(const BundleProblem& problem) {
+/// Standard deviation of a coordinate of the errors, from the median of their norms.
+double MeasureNoise(const std::vector<Eigen::Vector2d>& errors) {
   std::vector<double> norms;
-  for (const auto& error : BundleErrors(problem)) norms.push_back(error.norm());
+  for (const auto& error : errors) norms.push_back(error.norm());
   return norms.empty() ? kSmallestSigmaPx : std::max(kSmallestSigmaPx, kMedianToSigma * Median(std::move(norms)));
 }
 
 /// Leaves out the tracks that mostly contradict the motion: things that move by themselves, and slips.
-void DropContradictions(double sigma_px, BundleProblem* problem) {
+void DropContradictions(BundleProblem* problem) {
   const auto errors = BundleErrors(*problem);
+  const double sigma_px = MeasureNoise(errors);
   std::vector<int> balance(problem->points.size());
   for (std::size_t i = 0; i < errors.size(); ++i) {
     balance[problem->observations[i].point] += errors[i].norm() < kOutlierSigmas * sigma_px ? 1 : -1;
@@ -44,29 +45,28 @@ void DropContradictions(double sigma_px, BundleProblem* problem) {
   std::erase_if(problem->observations, [&](const BundleObservation& o) { return balance[o.point] < 0; });
 }
 
-/// Rounds of adjustment, each with the noise that the one before has left; returns the last.
-double Adjust(const FinalRefinementOptions& options, const std::function<void(double)>& progress,
-              BundleProblem* problem) {
-  double sigma_px = MeasureNoise(*problem);
+/// Rounds of adjustment, each with the noise that the one before has left.
+void Adjust(const FinalRefinementOptions& options, const std::function<void(double)>& progress,
+            BundleProblem* problem) {
   for (int round = 0; round < options.rounds; ++round) {
-    const auto summary =
-        AdjustBundle({.iterations = options.iterations, .loss_px = kCauchyEfficient * sigma_px}, problem);
+    const double sigma_px = MeasureNoise(BundleInnovations(*problem, options.drift));
+    const auto summary = AdjustBundle(
+        {.iterations = options.iterations, .loss_px = kCauchyEfficient * sigma_px, .drift = options.drift}, problem);
     spdlog::debug(
         "odometry: {} frames, {} points, {} sightings, noise {:.2f} px: cost {:.1f} to {:.1f} in {} iterations",
         problem->T_cam_world.size(), problem->points.size(), problem->observations.size(), sigma_px,
         summary.initial_cost, summary.final_cost, summary.iterations);
-    sigma_px = MeasureNoise(*problem);
-    DropContradictions(sigma_px, problem);
+    DropContradictions(problem);
     progress(0.9 * (round + 1) / options.rounds);
   }
-  return sigma_px;
 }
 
 /// The refined points of every track in order of time: a track may have been cut into several.
 class RefinedPoints {
  public:
-  void Add(std::int64_t track, int first_frame, const Eigen::Vector3d& position) {
-    pieces_[track].push_back({first_frame, position});
+  /// `errors` by frame of the run, in order, on the plane z = 1.
+  void Add(std::int64_t track, const Eigen::Vector3d& position, std::vector<std::pair<int, Eigen::Vector2d>> errors) {
+    pieces_[track].push_back({position, std::move(errors)});
   }
 
   PoseEstimate EstimatePose(const std::vector<Frame>& frames, int index, const SE3& start) const {
@@ -74,9 +74,9 @@ class RefinedPoints {
     for (const Feature& feature : frames[index].features) {
       const auto found = pieces_.find(feature.track);
       if (found == pieces_.end()) continue;
-      auto piece = std::ranges::upper_bound(found->second, index, {}, &Piece::first_frame);
+      auto piece = std::ranges::upper_bound(found->second, index, {}, [](const Piece& p) { return p.errors[0].first; });
       if (piece != found->second.begin()) --piece;
-      observations.push_back({piece->position, feature.x, feature.px_per_unit});
+      observations.push_back({piece->position, feature.x - Drift(*piece, index), feature.px_per_unit});
     }
     return optimizer_.Optimize(observations, start);
   }
@@ -85,20 +85,34 @@ class RefinedPoints {
 
  private:
   struct Piece {
-    int first_frame;
     Eigen::Vector3d position;  // world
+    std::vector<std::pair<int, Eigen::Vector2d>> errors;
   };
+
+  /// What the track is off by in that frame: tracks drift slowly, so about as much as in the frame before it.
+  static Eigen::Vector2d Drift(const Piece& piece, int index) {
+    auto at = std::ranges::upper_bound(piece.errors, index, {}, &std::pair<int, Eigen::Vector2d>::first);
+    if (at != piece.errors.begin()) --at;
+    return at->second;
+  }
+
   std::unordered_map<std::int64_t, std::vector<Piece>> pieces_;
   PoseOptimizer optimizer_{PoseOptions()};
 };
 
 /// Takes the points that lie in front, with their histories, into the segment's map.
-RefinedPoints TakePoints(const RunBundle& run, double sigma_px, Segment* segment) {
+RefinedPoints TakePoints(const RunBundle& run, Segment* segment) {
   std::vector<Point> points(run.tracks.size());
+  std::vector<std::vector<std::pair<int, Eigen::Vector2d>>> histories(run.tracks.size());
   const auto errors = BundleErrors(run.bundle);
+  const double sigma_px = MeasureNoise(errors);
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    Point& point = points[run.bundle.observations[i].point];
+    const BundleObservation& observation = run.bundle.observations[i];
+    Point& point = points[observation.point];
     ++(errors[i].norm() < kOutlierSigmas * sigma_px ? point.inliers : point.outliers);
+    if (!errors[i].allFinite()) continue;
+    histories[observation.point].emplace_back(segment->frames[run.frames[observation.frame]],
+                                              observation.px_per_unit.inverse() * errors[i]);
   }
   RefinedPoints refined;
   segment->points.clear();
@@ -107,7 +121,7 @@ RefinedPoints TakePoints(const RunBundle& run, double sigma_px, Segment* segment
     if (points[p].inliers < kFewestSightings || !(from.inverse_depth.z() > kSmallestInverseDepth)) continue;
     points[p].track = run.tracks[p];
     points[p].position = WorldPosition(run.bundle, from);
-    refined.Add(points[p].track, segment->frames[run.frames[from.anchor]], points[p].position);
+    refined.Add(points[p].track, points[p].position, std::move(histories[p]));
     segment->points.push_back(points[p]);
   }
   return refined;
@@ -165,6 +179,8 @@ void Register(Parameters& parameters, FinalRefinementOptions& options) {
   parameters.Add("odometry.final_refinement", &options.enabled, "bundle-adjust the whole run at the end");
   parameters.Add("odometry.final.min_disparity_px", &options.min_disparity_px, 0, 100,
                  "image motion in px between the frames that take part");
+  parameters.Add("odometry.final.drift", &options.drift, 0, 100,
+                 "variance by which tracks drift from frame to frame, over that of their noise");
   parameters.Add("odometry.final.iterations", &options.iterations, 1, 1000, "iterations of each round");
   parameters.Add("odometry.final.rounds", &options.rounds, 1, 100, "rounds, the noise measured anew before each");
   parameters.Add("odometry.final.budget", &options.budget, 1e3, 1e12,
@@ -174,8 +190,8 @@ void Register(Parameters& parameters, FinalRefinementOptions& options) {
 void RefineSegment(const FinalRefinementOptions& options, const std::vector<Frame>& frames, int before, int after,
                    const std::function<void(double)>& progress, Segment* segment) {
   RunBundle run = BuildRunBundle(options, frames, *segment);
-  const double sigma_px = Adjust(options, progress, &run.bundle);
-  const RefinedPoints points = TakePoints(run, sigma_px, segment);
+  Adjust(options, progress, &run.bundle);
+  const RefinedPoints points = TakePoints(run, segment);
   PoseFiller filler(frames, points);
   const auto& poses = run.bundle.T_cam_world;
   for (std::size_t k = 0; k < run.frames.size(); ++k) {

@@ -118,6 +118,69 @@ TEST(BundleAdjuster, FreeScaleStillConverges) {
   EXPECT_LT(summary.final_cost, 1e-8);
 }
 
+/// Lets every track slide over its surface at random, by `step_px` from sighting to sighting.
+void LetTracksDrift(double step_px, std::uint32_t seed, BundleProblem* problem) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0.0, step_px / 226.0);
+  Eigen::Vector2d slid = Eigen::Vector2d::Zero();
+  int point = -1;
+  for (auto& observation : problem->observations) {
+    const BundlePoint& of = problem->points[observation.point];
+    const SE3 T_cam_anchor = problem->T_cam_world[observation.frame] * problem->T_cam_world[of.anchor].Inverse();
+    const double depth_share =
+        (T_cam_anchor * (of.inverse_depth.head<2>().homogeneous() / of.inverse_depth.z())).z() * of.inverse_depth.z();
+    if (observation.point != point) slid.setZero();
+    point = observation.point;
+    observation.x += slid / depth_share;
+    slid += depth_share * Eigen::Vector2d(normal(random), normal(random));
+  }
+}
+
+/// Root mean square error of the poses' directions of view after an adjustment that expects that drift, rad.
+double TurnError(double drift, std::uint32_t seed) {
+  const auto truth = Drive(40, 500, 0.0, seed);
+  auto problem = Drive(40, 500, 0.1, seed);
+  problem.fixed_frames = 2;
+  LetTracksDrift(0.3, seed, &problem);
+  AdjustBundle({.iterations = 30, .loss_px = 100.0, .drift = drift}, &problem);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < truth.T_cam_world.size(); ++i) {
+    sum += (problem.T_cam_world[i] * truth.T_cam_world[i].Inverse()).Log().tail<3>().squaredNorm();
+  }
+  return std::sqrt(sum / static_cast<double>(truth.T_cam_world.size()));
+}
+
+TEST(BundleAdjuster, ExpectingDriftHelpsWhereTracksDrift) {
+  double with = 0.0, without = 0.0;
+  for (std::uint32_t seed = 1; seed <= 12; ++seed) {
+    with += TurnError(9.0, seed);
+    without += TurnError(0.0, seed);
+  }
+  EXPECT_LT(with, 0.9 * without);
+}
+
+TEST(BundleAdjuster, ExpectingDriftEndsInAMinimum) {
+  auto problem = Drive(10, 60, 0.5, 6);
+  problem.fixed_frames = 2;
+  const BundleOptions options{.iterations = 100, .drift = 0.4, .relative_decrease = 1e-14};
+  // The magnifications are those of the start, so from there once more.
+  for (int i = 0; i < 5; ++i) AdjustBundle(options, &problem);
+  const auto cost = [&](const BundleProblem& at) {
+    auto copy = at;
+    return AdjustBundle({.iterations = 0, .drift = 0.4}, &copy).initial_cost;
+  };
+  const double least = cost(problem);
+  for (std::size_t i = 2; i < problem.T_cam_world.size(); ++i) {
+    for (int k = 0; k < 6; ++k) {
+      for (const double h : {1e-3, -1e-3}) {
+        auto moved = problem;
+        moved.T_cam_world[i] = SE3::Exp(h * Vector6d::Unit(k)) * moved.T_cam_world[i];
+        EXPECT_GT(cost(moved), least) << i << " " << k;
+      }
+    }
+  }
+}
+
 TEST(BundleAdjuster, OutliersHardlyMatter) {
   const auto truth = Drive(12, 200, 0.0, 4);
   auto problem = Drive(12, 200, 0.3, 4);

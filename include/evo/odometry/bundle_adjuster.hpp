@@ -32,6 +32,7 @@ struct BundleProblem {
 struct BundleOptions {
   int iterations = 20;
   double loss_px = 1.0;             ///< Cauchy's width
+  double drift = 0.0;               ///< of tracks, from sighting to sighting, see InnovationStep
   double relative_decrease = 1e-8;  ///< of the cost in one step: stop below
 };
 
@@ -44,15 +45,15 @@ struct BundleSummary {
 /// The residual in raw pixels (to first order about the observation) and its derivatives by the left twist of the
 /// camera and by the point's three numbers, the anchor held. False if the point is behind the camera.
 struct BundleJacobian {
-  Eigen::Vector2d error;
-  Eigen::Matrix<double, 2, 6> by_pose;
-  Eigen::Matrix<double, 2, 3> by_point;
+  Eigen::Vector2d error = Eigen::Vector2d::Zero();
+  Eigen::Matrix<double, 2, 6> by_pose = Eigen::Matrix<double, 2, 6>::Zero();
+  Eigen::Matrix<double, 2, 3> by_point = Eigen::Matrix<double, 2, 3>::Zero();
 };
 bool Linearize(const SE3& T_cam_anchor, const Eigen::Vector3d& inverse_depth, const BundleObservation& observation,
                BundleJacobian* jacobian);
 
-/// Refines poses and points together: Levenberg-Marquardt on Cauchy's loss of the reprojection errors, the points
-/// eliminated by Schur's complement, the poses solved by a skyline Cholesky factorisation.
+/// Refines poses and points together: Levenberg-Marquardt on Cauchy's loss of the innovations of the reprojection
+/// errors, the points eliminated by Schur's complement, the poses solved by a skyline Cholesky factorisation.
 BundleSummary AdjustBundle(const BundleOptions& options, BundleProblem* problem);
 
 /// Where a point of the problem is in the world; infinite for rho = 0.
@@ -60,6 +61,9 @@ Eigen::Vector3d WorldPosition(const BundleProblem& problem, const BundlePoint& p
 
 /// The residual of every observation in px, infinite behind the camera.
 std::vector<Eigen::Vector2d> BundleErrors(const BundleProblem& problem);
+
+/// The same as innovations for that drift, see InnovationStep.
+std::vector<Eigen::Vector2d> BundleInnovations(const BundleProblem& problem, double drift);
 
 /// For every pose that is free, the first free pose that shares a point with it: the skyline of the reduced system.
 std::vector<int> BundleSkyline(const BundleProblem& problem);

@@ -12,9 +12,12 @@ namespace evo {
 struct FinalRefinementOptions {
   bool enabled = true;
   double min_disparity_px = 1.5;  ///< frames with less image motion since the last one taken are left to the end
-  int rounds = 3;                 ///< of adjustment, the noise measured anew before each
-  int iterations = 10;            ///< of each round
-  double budget = 4e6;            ///< 6x6 block products an iteration may cost; beyond it frames are thinned out
+  /// Variance of what tracks drift by from one of these frames to the next, over that of their noise, see
+  /// InnovationStep.
+  double drift = 0.07;
+  int rounds = 3;       ///< of adjustment, the noise measured anew before each
+  int iterations = 10;  ///< of each round
+  double budget = 4e6;  ///< 6x6 block products an iteration may cost; beyond it frames are thinned out
 };
 void Register(Parameters& parameters, FinalRefinementOptions& options);
 
