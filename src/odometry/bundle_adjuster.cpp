@@ -62,10 +62,12 @@ std::vector<InnovationStep> InnovationSteps(const BundleProblem& problem, double
   return steps;
 }
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 /// Errors of the observations [begin, end) of one point, infinite behind the camera.
 void TrackErrors(const BundleProblem& problem, std::size_t begin, std::size_t end,
                  std::vector<Eigen::Vector2d>* errors) {
-  errors->assign(end - begin, Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity()));
+  errors->assign(end - begin, Eigen::Vector2d::Constant(kInfinity));
   if (begin == end) return;
   const BundlePoint& point = problem.points[problem.observations[begin].point];
   const SE3 T_world_anchor = problem.T_cam_world[point.anchor].Inverse();
@@ -76,17 +78,23 @@ void TrackErrors(const BundleProblem& problem, std::size_t begin, std::size_t en
   }
 }
 
+/// Calls f(begin, errors) for the observations of every point, in order; they begin at `begin`.
+template <typename Function>
+void ForEachTrack(const BundleProblem& problem, const Function& f) {
+  std::vector<Eigen::Vector2d> errors;
+  const auto begin = FirstObservations(problem);
+  for (std::size_t p = 0; p < problem.points.size(); ++p) {
+    TrackErrors(problem, begin[p], begin[p + 1], &errors);
+    f(begin[p], errors);
+  }
+}
+
 /// What the observations [begin, end) of one point cost.
 double PointCost(const BundleProblem& problem, const ErrorModel& model, std::size_t begin, std::size_t end) {
   thread_local std::vector<Eigen::Vector2d> errors, innovations;
   TrackErrors(problem, begin, end, &errors);
-  double cost = 0.0;
-  for (auto& error : errors) {
-    if (error.allFinite()) continue;
-    error.setZero();
-    cost += CauchyCost(kBehindPx * kBehindPx, model.loss_px);
-  }
   Innovate(model.Steps(begin, end), errors, &innovations);
+  double cost = 0.0;
   for (const auto& innovation : innovations) {
     cost += CauchyCost(std::min(innovation.squaredNorm(), kBehindPx * kBehindPx), model.loss_px);
   }
@@ -193,24 +201,30 @@ bool Linearize(const SE3& T_cam_anchor, const Eigen::Vector3d& inverse_depth, co
 }
 
 std::vector<Eigen::Vector2d> BundleErrors(const BundleProblem& problem) {
-  std::vector<Eigen::Vector2d> errors, all;
-  const auto begin = FirstObservations(problem);
-  for (std::size_t p = 0; p < problem.points.size(); ++p) {
-    TrackErrors(problem, begin[p], begin[p + 1], &errors);
+  std::vector<Eigen::Vector2d> all;
+  ForEachTrack(problem, [&](std::size_t, const std::vector<Eigen::Vector2d>& errors) {
     all.insert(all.end(), errors.begin(), errors.end());
-  }
+  });
   return all;
 }
 
 std::vector<Eigen::Vector2d> BundleInnovations(const BundleProblem& problem, double drift) {
-  std::vector<Eigen::Vector2d> errors, innovations, all;
-  const auto begin = FirstObservations(problem);
+  std::vector<Eigen::Vector2d> innovations, all;
   const auto steps = InnovationSteps(problem, drift);
-  for (std::size_t p = 0; p < problem.points.size(); ++p) {
-    TrackErrors(problem, begin[p], begin[p + 1], &errors);
-    Innovate(std::span(steps).subspan(begin[p], begin[p + 1] - begin[p]), errors, &innovations);
+  ForEachTrack(problem, [&](std::size_t begin, const std::vector<Eigen::Vector2d>& errors) {
+    Innovate(std::span(steps).subspan(begin, errors.size()), errors, &innovations);
     all.insert(all.end(), innovations.begin(), innovations.end());
-  }
+  });
+  return all;
+}
+
+std::vector<Eigen::Vector2d> BundleDrifts(const BundleProblem& problem, double drift) {
+  std::vector<Eigen::Vector2d> drifts, all;
+  const auto steps = InnovationSteps(problem, drift);
+  ForEachTrack(problem, [&](std::size_t begin, const std::vector<Eigen::Vector2d>& errors) {
+    EstimateDrift(std::span(steps).subspan(begin, errors.size()), errors, &drifts);
+    all.insert(all.end(), drifts.begin(), drifts.end());
+  });
   return all;
 }
 
@@ -248,7 +262,7 @@ BundleSummary AdjustBundle(const BundleOptions& options, BundleProblem* problem)
     const std::vector<SE3> old_poses = problem->T_cam_world;
     const std::vector<BundlePoint> old_points = problem->points;
     const std::vector<double> old_costs = costs;
-    double cost = std::numeric_limits<double>::infinity();
+    double cost = kInfinity;
     while (damping <= kLargestDamping) {
       if (equations.Solve(damping, &pose_steps, &point_steps)) {
         Apply(pose_steps, point_steps, problem);

@@ -64,9 +64,9 @@ void Adjust(const FinalRefinementOptions& options, const std::function<void(doub
 /// The refined points of every track in order of time: a track may have been cut into several.
 class RefinedPoints {
  public:
-  /// `errors` by frame of the run, in order, on the plane z = 1.
-  void Add(std::int64_t track, const Eigen::Vector3d& position, std::vector<std::pair<int, Eigen::Vector2d>> errors) {
-    pieces_[track].push_back({position, std::move(errors)});
+  /// `drifts` by frame of the run, in order, on the plane z = 1.
+  void Add(std::int64_t track, const Eigen::Vector3d& position, std::vector<std::pair<int, Eigen::Vector2d>> drifts) {
+    pieces_[track].push_back({position, std::move(drifts)});
   }
 
   PoseEstimate EstimatePose(const std::vector<Frame>& frames, int index, const SE3& start) const {
@@ -74,7 +74,7 @@ class RefinedPoints {
     for (const Feature& feature : frames[index].features) {
       const auto found = pieces_.find(feature.track);
       if (found == pieces_.end()) continue;
-      auto piece = std::ranges::upper_bound(found->second, index, {}, [](const Piece& p) { return p.errors[0].first; });
+      auto piece = std::ranges::upper_bound(found->second, index, {}, [](const Piece& p) { return p.drifts[0].first; });
       if (piece != found->second.begin()) --piece;
       observations.push_back({piece->position, feature.x - Drift(*piece, index), feature.px_per_unit});
     }
@@ -86,13 +86,13 @@ class RefinedPoints {
  private:
   struct Piece {
     Eigen::Vector3d position;  // world
-    std::vector<std::pair<int, Eigen::Vector2d>> errors;
+    std::vector<std::pair<int, Eigen::Vector2d>> drifts;
   };
 
-  /// What the track is off by in that frame: tracks drift slowly, so about as much as in the frame before it.
+  /// What the track has drifted by in that frame: about as much as in the frame of the bundle before it.
   static Eigen::Vector2d Drift(const Piece& piece, int index) {
-    auto at = std::ranges::upper_bound(piece.errors, index, {}, &std::pair<int, Eigen::Vector2d>::first);
-    if (at != piece.errors.begin()) --at;
+    auto at = std::ranges::upper_bound(piece.drifts, index, {}, &std::pair<int, Eigen::Vector2d>::first);
+    if (at != piece.drifts.begin()) --at;
     return at->second;
   }
 
@@ -101,18 +101,18 @@ class RefinedPoints {
 };
 
 /// Takes the points that lie in front, with their histories, into the segment's map.
-RefinedPoints TakePoints(const RunBundle& run, Segment* segment) {
+RefinedPoints TakePoints(const RunBundle& run, double drift, Segment* segment) {
   std::vector<Point> points(run.tracks.size());
   std::vector<std::vector<std::pair<int, Eigen::Vector2d>>> histories(run.tracks.size());
   const auto errors = BundleErrors(run.bundle);
+  const auto drifts = BundleDrifts(run.bundle, drift);
   const double sigma_px = MeasureNoise(errors);
   for (std::size_t i = 0; i < errors.size(); ++i) {
     const BundleObservation& observation = run.bundle.observations[i];
     Point& point = points[observation.point];
     ++(errors[i].norm() < kOutlierSigmas * sigma_px ? point.inliers : point.outliers);
-    if (!errors[i].allFinite()) continue;
     histories[observation.point].emplace_back(segment->frames[run.frames[observation.frame]],
-                                              observation.px_per_unit.inverse() * errors[i]);
+                                              observation.px_per_unit.inverse() * drifts[i]);
   }
   RefinedPoints refined;
   segment->points.clear();
@@ -191,7 +191,7 @@ void RefineSegment(const FinalRefinementOptions& options, const std::vector<Fram
                    const std::function<void(double)>& progress, Segment* segment) {
   RunBundle run = BuildRunBundle(options, frames, *segment);
   Adjust(options, progress, &run.bundle);
-  const RefinedPoints points = TakePoints(run, segment);
+  const RefinedPoints points = TakePoints(run, options.drift, segment);
   PoseFiller filler(frames, points);
   const auto& poses = run.bundle.T_cam_world;
   for (std::size_t k = 0; k < run.frames.size(); ++k) {

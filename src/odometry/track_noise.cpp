@@ -5,6 +5,12 @@
 
 namespace evo {
 
+namespace {
+
+const Eigen::Vector2d kNone = Eigen::Vector2d::Zero();
+
+}  // namespace
+
 void AppendInnovationSteps(double drift, std::span<const double> magnifications, std::vector<InnovationStep>* steps) {
   // Variances in units of the white noise's: of the drift in the long run, and before each sighting.
   const double settled = 0.5 * (drift + std::sqrt(drift * drift + 4.0 * drift));
@@ -23,9 +29,21 @@ void Innovate(std::span<const InnovationStep> steps, const std::vector<Eigen::Ve
   innovations->resize(errors.size());
   Eigen::Vector2d expected = Eigen::Vector2d::Zero();
   for (std::size_t k = 0; k < errors.size(); ++k) {
-    const Eigen::Vector2d innovation = steps[k].shrink * errors[k] - expected;
-    (*innovations)[k] = steps[k].scale * innovation;
+    const bool seen = errors[k].allFinite();
+    const Eigen::Vector2d innovation = (seen ? Eigen::Vector2d(steps[k].shrink * errors[k]) : kNone) - expected;
+    (*innovations)[k] = seen ? Eigen::Vector2d(steps[k].scale * innovation) : errors[k];
     expected += steps[k].gain * innovation;
+  }
+}
+
+void EstimateDrift(std::span<const InnovationStep> steps, const std::vector<Eigen::Vector2d>& errors,
+                   std::vector<Eigen::Vector2d>* drifts) {
+  drifts->resize(errors.size());
+  Eigen::Vector2d expected = Eigen::Vector2d::Zero();
+  for (std::size_t k = 0; k < errors.size(); ++k) {
+    const bool seen = errors[k].allFinite();
+    expected += steps[k].gain * ((seen ? Eigen::Vector2d(steps[k].shrink * errors[k]) : kNone) - expected);
+    (*drifts)[k] = expected / steps[k].shrink;
   }
 }
 

@@ -65,6 +65,9 @@ std::vector<Eigen::Vector2d> BundleErrors(const BundleProblem& problem);
 /// The same as innovations for that drift, see InnovationStep.
 std::vector<Eigen::Vector2d> BundleInnovations(const BundleProblem& problem, double drift);
 
+/// The part of every residual that is thought to be drift, see EstimateDrift.
+std::vector<Eigen::Vector2d> BundleDrifts(const BundleProblem& problem, double drift);
+
 /// For every pose that is free, the first free pose that shares a point with it: the skyline of the reduced system.
 std::vector<int> BundleSkyline(const BundleProblem& problem);
 

@@ -24,9 +24,14 @@ struct InnovationStep {
 /// Appends the steps of one track, given the magnification at each of its sightings.
 void AppendInnovationSteps(double drift, std::span<const double> magnifications, std::vector<InnovationStep>* steps);
 
-/// Both of the length of `steps`. With a drift of 0 the innovations are the errors.
+/// Both of the length of `steps`. With a drift of 0 the innovations are the errors. An infinite error counts as none
+/// for those after it, and is its own innovation.
 void Innovate(std::span<const InnovationStep> steps, const std::vector<Eigen::Vector2d>& errors,
               std::vector<Eigen::Vector2d>* innovations);
+
+/// The part of every error that is thought to be drift, m_k b_k, given the errors so far. With a drift of 0 it is 0.
+void EstimateDrift(std::span<const InnovationStep> steps, const std::vector<Eigen::Vector2d>& errors,
+                   std::vector<Eigen::Vector2d>* drifts);
 
 /// L^T diag(weights) L, where L turns errors into innovations: the inverse covariance of one coordinate of the errors,
 /// in units of an innovation's, if the innovations have these weights.
