@@ -15,6 +15,7 @@ cat <<END
 In $PWD/$out:
   report/index.html                     one page with everything below
   trajectory.txt, map.ply               a pose for each frame (TUM: stamp, position, quaternion); the points of the map
+  pose_covariance.csv                   how uncertain each pose is
   tracks.txt, lifetime.csv              the feature tracks and how long they live
   summary.csv, metrics.csv, errors.csv  the errors against the ground truth, in all, all statistics, and pose by pose
   tables/*.tex                          lifetimes and errors for a paper

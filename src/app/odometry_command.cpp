@@ -32,7 +32,9 @@ void RunOdometryCommand(const OdometryArguments& arguments, const std::vector<st
 
 Command AddOdometryCommand(CLI::App& app) {
   auto arguments = std::make_shared<OdometryArguments>();
-  auto* const parser = app.add_subcommand("odometry", "Trajectory and map from a track file: trajectory.txt, map.ply");
+  auto* const parser = app.add_subcommand(
+      "odometry",
+      "Trajectory, its uncertainty and map from a track file: trajectory.txt, pose_covariance.csv, map.ply");
   parser
       ->add_option("--tracks", arguments->tracks,
                    "rows 'id t x y' (this tool, EKLT, rpg) or 't,x,y,theta,id' (HASTE), in any order")

@@ -135,10 +135,10 @@ TrackingOutcome RunTrackingStage(StageContext* context, Recording* recording) {
   return outcome;
 }
 
-std::vector<std::string> OdometryResultNames() { return {"trajectory.txt", "map.ply"}; }
+std::vector<std::string> OdometryResultNames() { return {"trajectory.txt", "pose_covariance.csv", "map.ply"}; }
 
 void RemoveOdometryResults(const std::filesystem::path& folder) {
-  RemoveResults(folder, R"(manifest\.json|trajectory\.txt|map\.ply)");
+  RemoveResults(folder, R"(manifest\.json|trajectory\.txt|pose_covariance\.csv|map\.ply)");
 }
 
 OdometryResult RunOdometryStage(StageContext* context, const Tracks& tracks, const std::filesystem::path& source,
@@ -157,6 +157,9 @@ OdometryResult RunOdometryStage(StageContext* context, const Tracks& tracks, con
   }
   context->record.Time("write_trajectory", [&] {
     WriteTum(context->options.out / "trajectory.txt", result.trajectory);
+    if (!result.covariances.empty()) {
+      WritePoseCovariances(context->options.out / "pose_covariance.csv", result.trajectory, result.covariances);
+    }
     WriteMap(result.points, context->options.out / "map.ply");
   });
   context->record.AddCount("frames", static_cast<std::size_t>(result.frames));

@@ -61,7 +61,8 @@ TrackingOutcome RunTrackingStage(StageContext* context, Recording* recording);
 
 std::vector<std::string> OdometryResultNames();
 void RemoveOdometryResults(const std::filesystem::path& folder);
-/// Runs the odometry and writes trajectory.txt and map.ply. `source` is the file of the tracks, for messages. Throws
+/// Runs the odometry and writes trajectory.txt, pose_covariance.csv (if there is a final refinement) and map.ply.
+/// `source` is the file of the tracks, for messages. Throws
 /// Error.
 OdometryResult RunOdometryStage(StageContext* context, const Tracks& tracks, const std::filesystem::path& source,
                                 const Camera& camera);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "evo/core/error.hpp"
+#include "evo/core/format.hpp"
 #include "evo/core/output_file.hpp"
 #include "evo/io/file_kind.hpp"
 #include "io/hdf5.hpp"
@@ -167,6 +168,25 @@ void WriteTum(const std::filesystem::path& path, const Trajectory& trajectory) {
     std::snprintf(numbers, sizeof numbers, " %.12f %.12f %.12f %.12f %.12f %.12f %.12f\n", p.x(), p.y(), p.z(), q.x(),
                   q.y(), q.z(), q.w());
     file.stream() << FormatTime(t) << numbers;
+  }
+  file.Commit();
+}
+
+void WritePoseCovariances(const std::filesystem::path& path, const Trajectory& trajectory,
+                          const std::vector<Eigen::Matrix<double, 6, 6>>& covariances) {
+  constexpr std::array kNames = {"x", "y", "z", "rx", "ry", "rz"};
+  OutputFile file(path);
+  file.stream() << "timestamp";
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    for (std::size_t j = i; j < kNames.size(); ++j) file.stream() << ',' << kNames[i] << '_' << kNames[j];
+  }
+  file.stream() << '\n';
+  for (std::size_t k = 0; k < trajectory.size(); ++k) {
+    file.stream() << FormatTime(trajectory[k].t);
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      for (Eigen::Index j = i; j < 6; ++j) file.stream() << Format(",%.9g", covariances[k](i, j));
+    }
+    file.stream() << '\n';
   }
   file.Commit();
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <random>
 #include <span>
 #include <utility>
 
@@ -18,6 +19,7 @@ constexpr double kSmallestDamping = 1e-12;  // long drives bend by tiny forces: 
 constexpr double kRetryDamping = 1e-7;      // at least, after a step that did not help
 constexpr double kLargestDamping = 1e6;
 constexpr double kLargestMagnification = 10.0;
+constexpr int kDraws = 100;  // for covariances
 constexpr int kSettleSteps = 3;
 constexpr double kSettleDamping = 1e-3;
 
@@ -281,6 +283,26 @@ BundleSummary AdjustBundle(const BundleOptions& options, BundleProblem* problem)
     if (decrease < options.relative_decrease * cost) break;
   }
   return summary;
+}
+
+std::vector<Eigen::Matrix<double, 6, 6>> PoseCovariances(const BundleOptions& options, const BundleProblem& problem) {
+  const auto begin = FirstObservations(problem);
+  const ErrorModel model{InnovationSteps(problem, options.drift), options.loss_px};
+  BundleEquations equations(problem, model, begin);
+  equations.Linearize();
+  if (!equations.Factorize()) return {};
+  std::vector<Eigen::Matrix<double, 6, 6>> covariances(problem.T_cam_world.size(), Eigen::Matrix<double, 6, 6>::Zero());
+  std::mt19937 random(1);  // its numbers, unlike those of distributions, are the same everywhere
+  std::vector<double> signs(problem.points.size());
+  for (int draw = 0; draw < kDraws; ++draw) {
+    for (double& sign : signs) sign = random() % 2 == 0 ? 1.0 : -1.0;
+    const Eigen::VectorXd steps = equations.StepsIf(signs);
+    for (Eigen::Index i = 0; i < steps.size() / 6; ++i) {
+      const Vector6d step = steps.segment<6>(Eigen::Index{6} * i);
+      covariances[static_cast<std::size_t>(problem.fixed_frames + i)] += step * step.transpose() / kDraws;
+    }
+  }
+  return covariances;
 }
 
 }  // namespace evo

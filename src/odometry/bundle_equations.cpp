@@ -62,6 +62,7 @@ BundleEquations::BundleEquations(const BundleProblem& problem, const ErrorModel&
       poses_(BundleSkyline(problem)),
       reduced_(poses_),
       cross_(problem.observations.size()),
+      pulls_(problem.observations.size(), Vector6d::Zero()),
       point_blocks_(problem.points.size()),
       inverses_(problem.points.size()),
       point_gradients_(problem.points.size()) {}
@@ -99,7 +100,8 @@ void BundleEquations::LinearizePoint(std::size_t p) {
     const int row = Pose(i);
     if (row < 0) continue;
     const Eigen::Matrix<double, 6, 2> turned = sighting.by_pose.transpose();
-    pose_gradient_.segment<6>(Eigen::Index{6} * row).noalias() += turned * error;
+    pulls_[i].noalias() = turned * error;
+    pose_gradient_.segment<6>(Eigen::Index{6} * row) += pulls_[i];
     cross_[i].noalias() = turned.lazyProduct(by_point);
     for (std::size_t l = 0; l <= k; ++l) {
       const double information = track_.information(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l));
@@ -111,14 +113,34 @@ void BundleEquations::LinearizePoint(std::size_t p) {
   }
 }
 
-bool BundleEquations::Solve(double lambda, Eigen::VectorXd* pose_steps, std::vector<Eigen::Vector3d>* point_steps) {
+void BundleEquations::Reduce(double lambda, Eigen::VectorXd* right) {
   reduced_ = poses_;
-  Eigen::VectorXd right = -pose_gradient_;
+  *right = -pose_gradient_;
   for (int i = 0; i < reduced_.rows(); ++i) {
     reduced_.At(i, i).diagonal() *= 1.0 + lambda;
     reduced_.At(i, i).diagonal().array() += kSmallestEntry;
   }
-  for (std::size_t p = 0; p < problem_.points.size(); ++p) EliminatePoint(p, lambda, &right);
+  for (std::size_t p = 0; p < problem_.points.size(); ++p) EliminatePoint(p, lambda, right);
+}
+
+bool BundleEquations::Factorize() {
+  Eigen::VectorXd right;
+  Reduce(0.0, &right);
+  return reduced_.Factorize();
+}
+
+Eigen::VectorXd BundleEquations::StepsIf(const std::vector<double>& signs) const {
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(Eigen::Index{6} * reduced_.rows());
+  for (std::size_t i = 0; i < pulls_.size(); ++i) {
+    if (Pose(i) < 0) continue;
+    gradient.segment<6>(Eigen::Index{6} * Pose(i)) += signs[problem_.observations[i].point] * pulls_[i];
+  }
+  return reduced_.Solve(-gradient);
+}
+
+bool BundleEquations::Solve(double lambda, Eigen::VectorXd* pose_steps, std::vector<Eigen::Vector3d>* point_steps) {
+  Eigen::VectorXd right;
+  Reduce(lambda, &right);
   if (!reduced_.Factorize()) return false;
   *pose_steps = reduced_.Solve(right);
   point_steps->resize(problem_.points.size());

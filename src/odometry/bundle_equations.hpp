@@ -54,10 +54,17 @@ class BundleEquations {
   /// Steps of poses (left twists) and points for a damping `lambda`; false if the system is singular.
   bool Solve(double lambda, Eigen::VectorXd* pose_steps, std::vector<Eigen::Vector3d>* point_steps);
 
+  /// Reduces and factorises the system without damping; false if it is singular.
+  bool Factorize();
+  /// After that: the poses' steps if every track's part of the gradient, the points' at rest, had that sign.
+  Eigen::VectorXd StepsIf(const std::vector<double>& signs) const;
+
  private:
   int Pose(std::size_t observation) const { return problem_.observations[observation].frame - problem_.fixed_frames; }
   void LinearizePoint(std::size_t p);
   void LinearizeScale();
+  /// The reduced system into `reduced_` and `right`.
+  void Reduce(double lambda, Eigen::VectorXd* right);
   void EliminatePoint(std::size_t p, double lambda, Eigen::VectorXd* right);
 
   const BundleProblem& problem_;
@@ -68,6 +75,7 @@ class BundleEquations {
   BlockSkyline poses_;    // the poses' part
   BlockSkyline reduced_;  // the same without the points
   std::vector<Eigen::Matrix<double, 6, 3>> cross_;
+  std::vector<Vector6d> pulls_;  // of every observation on its pose
   std::vector<Eigen::Matrix3d> point_blocks_;
   std::vector<Eigen::Matrix3d> inverses_;
   std::vector<Eigen::Vector3d> point_gradients_;

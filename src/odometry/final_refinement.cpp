@@ -45,13 +45,14 @@ void DropContradictions(BundleProblem* problem) {
   std::erase_if(problem->observations, [&](const BundleObservation& o) { return balance[o.point] < 0; });
 }
 
-/// Rounds of adjustment, each with the noise that the one before has left.
-void Adjust(const FinalRefinementOptions& options, const std::function<void(double)>& progress,
-            BundleProblem* problem) {
+/// Rounds of adjustment, each with the noise that the one before has left; returns the last round's options.
+BundleOptions Adjust(const FinalRefinementOptions& options, const std::function<void(double)>& progress,
+                     BundleProblem* problem) {
+  BundleOptions last{.iterations = options.iterations, .drift = options.drift};
   for (int round = 0; round < options.rounds; ++round) {
     const double sigma_px = MeasureNoise(BundleInnovations(*problem, options.drift));
-    const auto summary = AdjustBundle(
-        {.iterations = options.iterations, .loss_px = kCauchyEfficient * sigma_px, .drift = options.drift}, problem);
+    last.loss_px = kCauchyEfficient * sigma_px;
+    const auto summary = AdjustBundle(last, problem);
     spdlog::debug(
         "odometry: {} frames, {} points, {} sightings, noise {:.2f} px: cost {:.1f} to {:.1f} in {} iterations",
         problem->T_cam_world.size(), problem->points.size(), problem->observations.size(), sigma_px,
@@ -59,6 +60,7 @@ void Adjust(const FinalRefinementOptions& options, const std::function<void(doub
     DropContradictions(problem);
     progress(0.9 * (round + 1) / options.rounds);
   }
+  return last;
 }
 
 /// The refined points of every track in order of time: a track may have been cut into several.
@@ -131,35 +133,41 @@ RefinedPoints TakePoints(const RunBundle& run, double drift, Segment* segment) {
 /// start from their neighbours, and the frames before and after the segment are taken in as far as they can be tracked.
 class PoseFiller {
  public:
+  using Covariance = Eigen::Matrix<double, 6, 6>;
+
   PoseFiller(const std::vector<Frame>& frames, const RefinedPoints& points) : frames_(frames), points_(points) {}
 
   /// From `frame` on in steps of `direction` up to but without `end`, while the poses can be estimated.
-  void Extend(int frame, int end, int direction, SE3 start) {
+  void Extend(int frame, int end, int direction, SE3 start, const Covariance& of_start) {
     for (; frame != end; frame += direction) {
-      if (!Estimate(frame, start)) return;
+      if (!Estimate(frame, start, of_start)) return;
       start = poses_.at(frame).T_cam_world;
     }
   }
 
-  bool Estimate(int frame, const SE3& start) {
+  /// `start` is the pose of a frame of the bundle nearby.
+  bool Estimate(int frame, const SE3& start, const Covariance& of_start) {
     const PoseEstimate estimate = points_.EstimatePose(frames_, frame, start);
     if (!points_.Accepts(estimate)) return false;
-    poses_[frame] = {estimate.T_cam_world, estimate.inlier_count};
+    // The points are as uncertain as the bundle's poses nearby.
+    poses_[frame] = {estimate.T_cam_world, estimate.inlier_count, of_start + estimate.covariance};
     return true;
   }
 
-  void Keep(int frame, const SE3& T_cam_world) {
-    poses_[frame] = {T_cam_world, points_.EstimatePose(frames_, frame, T_cam_world).inlier_count};
+  void Keep(int frame, const SE3& T_cam_world, const Covariance& covariance) {
+    poses_[frame] = {T_cam_world, points_.EstimatePose(frames_, frame, T_cam_world).inlier_count, covariance};
   }
 
   void MoveTo(Segment* segment) const {
     segment->frames.clear();
     segment->T_cam_world.clear();
     segment->inliers.clear();
+    segment->covariances.clear();
     for (const auto& [frame, pose] : poses_) {
       segment->frames.push_back(frame);
       segment->T_cam_world.push_back(pose.T_cam_world);
       segment->inliers.push_back(pose.inliers);
+      segment->covariances.push_back(pose.covariance);
     }
   }
 
@@ -167,6 +175,7 @@ class PoseFiller {
   struct Pose {
     SE3 T_cam_world;
     int inliers = 0;
+    Covariance covariance;
   };
   const std::vector<Frame>& frames_;
   const RefinedPoints& points_;
@@ -190,19 +199,21 @@ void Register(Parameters& parameters, FinalRefinementOptions& options) {
 void RefineSegment(const FinalRefinementOptions& options, const std::vector<Frame>& frames, int before, int after,
                    const std::function<void(double)>& progress, Segment* segment) {
   RunBundle run = BuildRunBundle(options, frames, *segment);
-  Adjust(options, progress, &run.bundle);
+  const BundleOptions adjusted = Adjust(options, progress, &run.bundle);
+  auto covariances = PoseCovariances(adjusted, run.bundle);
+  covariances.resize(run.frames.size(), Eigen::Matrix<double, 6, 6>::Zero());
   const RefinedPoints points = TakePoints(run, options.drift, segment);
   PoseFiller filler(frames, points);
   const auto& poses = run.bundle.T_cam_world;
   for (std::size_t k = 0; k < run.frames.size(); ++k) {
     const int frame = segment->frames[run.frames[k]];
-    filler.Keep(frame, poses[k]);
+    filler.Keep(frame, poses[k], covariances[k]);
     const bool last = k + 1 == run.frames.size();
     const int next = last ? segment->frames.back() + 1 : segment->frames[run.frames[k + 1]];
-    for (int between = frame + 1; between < next; ++between) filler.Estimate(between, poses[k]);
+    for (int between = frame + 1; between < next; ++between) filler.Estimate(between, poses[k], covariances[k]);
   }
-  filler.Extend(segment->frames.front() - 1, before - 1, -1, poses.front());
-  filler.Extend(segment->frames.back() + 1, after, 1, poses.back());
+  filler.Extend(segment->frames.front() - 1, before - 1, -1, poses.front(), covariances.front());
+  filler.Extend(segment->frames.back() + 1, after, 1, poses.back(), covariances.back());
   filler.MoveTo(segment);
   progress(1.0);
 }

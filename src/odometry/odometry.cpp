@@ -50,6 +50,13 @@ void RefineSegments(const FinalRefinementOptions& options, const std::vector<Fra
   }
 }
 
+/// Of the camera in the world, from that of the left twist of T_cam_world.
+Eigen::Matrix<double, 6, 6> InWorld(const SE3& T_cam_world, const Eigen::Matrix<double, 6, 6>& covariance) {
+  Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
+  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = T_cam_world.Inverse().RotationMatrix();
+  return turn * covariance * turn.transpose();
+}
+
 void ListLost(const std::vector<Frame>& frames, OdometryResult* result) {
   auto pose = result->trajectory.begin();
   for (const Frame& frame : frames) {
@@ -100,6 +107,8 @@ OdometryResult RunOdometry(const Tracks& tracks, const Camera& camera, const Odo
     for (std::size_t i = 0; i < segment.frames.size(); ++i) {
       result.trajectory.push_back({frames[segment.frames[i]].t, segment.T_cam_world[i].Inverse()});
       result.inliers.push_back(segment.inliers[i]);
+      if (segment.covariances.empty()) continue;
+      result.covariances.push_back(InWorld(segment.T_cam_world[i], segment.covariances[i]));
     }
     result.points.insert(result.points.end(), segment.points.begin(), segment.points.end());
   }

@@ -195,9 +195,9 @@ TEST_F(PipelineTest, AForcedRunLeavesNothingOfTheOneBefore) {
 
   // Without ground truth there is no error that could be taken for the new trajectory's.
   ASSERT_EQ(Run(words + Blind()), 0) << err;
-  EXPECT_EQ(FileNames(result),
-            (std::vector<std::string>{"errors_mine.csv", "errors_sim3.txt", "images", "lifetime.csv", "manifest.json",
-                                      "map.ply", "plots", "tables", "tracks.txt", "trajectory.txt"}));
+  EXPECT_EQ(FileNames(result), (std::vector<std::string>{"errors_mine.csv", "errors_sim3.txt", "images", "lifetime.csv",
+                                                         "manifest.json", "map.ply", "plots", "pose_covariance.csv",
+                                                         "tables", "tracks.txt", "trajectory.txt"}));
   EXPECT_EQ(FileNames(result / "plots"), std::vector<std::string>{"errors_mine.svg"});
   EXPECT_EQ(FileNames(result / "tables"), (std::vector<std::string>{"lifetime.tex", "mine.tex"}));
   EXPECT_EQ(CountFiles(result / "images"), 0);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <array>
 #include <random>
 
 #include "evo/odometry/block_skyline.hpp"
@@ -178,6 +179,43 @@ TEST(BundleAdjuster, ExpectingDriftEndsInAMinimum) {
         EXPECT_GT(cost(moved), least) << i << " " << k;
       }
     }
+  }
+}
+
+/// Mean squared error of the poses over what their covariances say, for one degree of freedom: 1 if they are honest.
+double NormalizedError(double noise_px, double drift_px, double expected_drift, std::uint32_t seed) {
+  const auto truth = Drive(40, 500, 0.0, seed);
+  auto problem = Drive(40, 500, noise_px, seed);
+  problem.fixed_frames = 2;
+  LetTracksDrift(drift_px, seed, &problem);
+  const BundleOptions options{.iterations = 30, .loss_px = 1.0, .drift = expected_drift};
+  AdjustBundle(options, &problem);
+  const auto covariances = PoseCovariances(options, problem);
+  EXPECT_EQ(covariances.front().norm(), 0.0) << "it is fixed";
+  double sum = 0.0;
+  for (std::size_t i = 2; i < truth.T_cam_world.size(); ++i) {
+    const Vector6d error = (problem.T_cam_world[i] * truth.T_cam_world[i].Inverse()).Log();
+    sum += error.dot(covariances[i].ldlt().solve(error)) / 6.0;
+  }
+  return sum / static_cast<double>(truth.T_cam_world.size() - 2);
+}
+
+double MeanNormalizedError(double noise_px, double drift_px, double expected_drift) {
+  double sum = 0.0;
+  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+    sum += NormalizedError(noise_px, drift_px, expected_drift, seed) / 10.0;
+  }
+  return sum;
+}
+
+TEST(BundleAdjuster, CovariancesAreHonest) {
+  // The bounds leave room for the scatter of ten drives whose poses err together; half or twice the standard deviation
+  // would be far outside.
+  for (const auto& [noise_px, drift_px, expected_drift] :
+       {std::array{0.3, 0.0, 0.0}, std::array{0.2, 0.2, 1.0}, std::array{0.2, 0.2, 0.0}}) {
+    const double normalized = MeanNormalizedError(noise_px, drift_px, expected_drift);
+    EXPECT_GT(normalized, 0.5) << noise_px << " " << drift_px;
+    EXPECT_LT(normalized, 2.0) << noise_px << " " << drift_px;
   }
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <filesystem>
+#include <vector>
 
 #include "evo/geometry/trajectory.hpp"
 
@@ -28,5 +30,10 @@ Trajectory ReadGroundTruth(const std::filesystem::path& path, GroundTruthSource 
 /// Writes a TUM text: single spaces, stamps with nine decimals, the rest with twelve.
 /// Throws Error (kOutput, or kInput for a pose that is not finite).
 void WriteTum(const std::filesystem::path& path, const Trajectory& trajectory);
+
+/// Writes a row `timestamp` and the upper triangle, row by row, of the covariance of (x, y, z, rx, ry, rz) for each
+/// pose: its position and its rotation vector, both along the axes of the world. Throws Error (kOutput).
+void WritePoseCovariances(const std::filesystem::path& path, const Trajectory& trajectory,
+                          const std::vector<Eigen::Matrix<double, 6, 6>>& covariances);
 
 }  // namespace evo

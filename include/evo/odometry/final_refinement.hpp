@@ -26,7 +26,10 @@ struct Segment {
   std::vector<int> frames;       ///< indices, in order of time
   std::vector<SE3> T_cam_world;  ///< of these frames
   std::vector<int> inliers;      ///< of these frames
-  std::vector<Point> points;     ///< of the map
+  /// Of the left twists of these poses, the first pose and the distance of the farthest held; empty before
+  /// RefineSegment.
+  std::vector<Eigen::Matrix<double, 6, 6>> covariances;
+  std::vector<Point> points;  ///< of the map
 };
 
 /// Bundle adjustment over the frames of one segment and all their tracks, then every frame's pose against the refined
