@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <random>
@@ -19,6 +20,7 @@ constexpr double kSmallestDamping = 1e-12;  // long drives bend by tiny forces: 
 constexpr double kRetryDamping = 1e-7;      // at least, after a step that did not help
 constexpr double kLargestDamping = 1e6;
 constexpr double kLargestMagnification = 10.0;
+constexpr std::size_t kPointsAtOnce = 64;
 constexpr int kDraws = 100;  // for covariances
 constexpr int kSettleSteps = 3;
 constexpr double kSettleDamping = 1e-3;
@@ -136,13 +138,22 @@ double SettlePoint(const ErrorModel& model, std::size_t begin, std::size_t end, 
   return cost;
 }
 
+/// Calls work(p) for all points, each of which writes only what is its own.
+void ForEachPoint(std::size_t count, ThreadPool* pool, const std::function<void(std::size_t)>& work) {
+  if (pool) {
+    pool->ForEach(count, work, kPointsAtOnce);
+  } else {
+    for (std::size_t p = 0; p < count; ++p) work(p);
+  }
+}
+
 /// All points' costs after a step. A point that the common step has made worse, one far away or nearly on the path,
 /// goes back and settles by itself, lest it hold up all the others.
 double CostAfterStep(const std::vector<BundlePoint>& old_points, const ErrorModel& model,
-                     const std::vector<std::size_t>& begin, std::vector<double>* costs, BundleProblem* problem) {
-  double sum = 0.0;
-  for (std::size_t p = 0; p < costs->size(); ++p) {
-    if (begin[p] == begin[p + 1]) continue;
+                     const std::vector<std::size_t>& begin, ThreadPool* pool, std::vector<double>* costs,
+                     BundleProblem* problem) {
+  ForEachPoint(costs->size(), pool, [&](std::size_t p) {
+    if (begin[p] == begin[p + 1]) return;
     double cost = PointCost(*problem, model, begin[p], begin[p + 1]);
     if (cost > (*costs)[p]) {
       const BundlePoint stepped = std::exchange(problem->points[p], old_points[p]);
@@ -150,9 +161,8 @@ double CostAfterStep(const std::vector<BundlePoint>& old_points, const ErrorMode
       cost = SettlePoint(model, begin[p], begin[p + 1], problem);
     }
     (*costs)[p] = cost;
-    sum += cost;
-  }
-  return sum;
+  });
+  return std::accumulate(costs->begin(), costs->end(), 0.0);
 }
 
 /// What a point's numbers lose when its anchor moves by the left twist and the point stays, to first order.
@@ -248,14 +258,14 @@ std::vector<int> BundleSkyline(const BundleProblem& problem) {
   return first;
 }
 
-BundleSummary AdjustBundle(const BundleOptions& options, BundleProblem* problem) {
+BundleSummary AdjustBundle(const BundleOptions& options, BundleProblem* problem, ThreadPool* pool) {
   const auto begin = FirstObservations(*problem);
   const ErrorModel model{InnovationSteps(*problem, options.drift), options.loss_px};
   std::vector<double> costs(problem->points.size());
   for (std::size_t p = 0; p < costs.size(); ++p) costs[p] = PointCost(*problem, model, begin[p], begin[p + 1]);
   BundleSummary summary;
   summary.initial_cost = summary.final_cost = std::accumulate(costs.begin(), costs.end(), 0.0);
-  BundleEquations equations(*problem, model, begin);
+  BundleEquations equations(*problem, model, begin, pool);
   double damping = kSmallestDamping;
   Eigen::VectorXd pose_steps;
   std::vector<Eigen::Vector3d> point_steps;
@@ -268,7 +278,7 @@ BundleSummary AdjustBundle(const BundleOptions& options, BundleProblem* problem)
     while (damping <= kLargestDamping) {
       if (equations.Solve(damping, &pose_steps, &point_steps)) {
         Apply(pose_steps, point_steps, problem);
-        cost = CostAfterStep(old_points, model, begin, &costs, problem);
+        cost = CostAfterStep(old_points, model, begin, pool, &costs, problem);
         if (cost < summary.final_cost) break;
         problem->T_cam_world = old_poses;
         problem->points = old_points;
@@ -285,10 +295,11 @@ BundleSummary AdjustBundle(const BundleOptions& options, BundleProblem* problem)
   return summary;
 }
 
-std::vector<Eigen::Matrix<double, 6, 6>> PoseCovariances(const BundleOptions& options, const BundleProblem& problem) {
+std::vector<Eigen::Matrix<double, 6, 6>> PoseCovariances(const BundleOptions& options, const BundleProblem& problem,
+                                                         ThreadPool* pool) {
   const auto begin = FirstObservations(problem);
   const ErrorModel model{InnovationSteps(problem, options.drift), options.loss_px};
-  BundleEquations equations(problem, model, begin);
+  BundleEquations equations(problem, model, begin, pool);
   equations.Linearize();
   if (!equations.Factorize()) return {};
   std::vector<Eigen::Matrix<double, 6, 6>> covariances(problem.T_cam_world.size(), Eigen::Matrix<double, 6, 6>::Zero());

@@ -2,18 +2,44 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 namespace evo {
 
 namespace {
 
-constexpr double kScalePrior = 1e3;       // px: what doubling the scale would cost
-constexpr double kPointDamping = 1e-9;    // of a point's largest entry: points on the path have no depth
-constexpr double kSmallestEntry = 1e-12;  // keeps a pose or point that nothing sees from being singular
+constexpr double kScalePrior = 1e3;         // px: what doubling the scale would cost
+constexpr double kPointDamping = 1e-9;      // of a point's largest entry: points on the path have no depth
+constexpr std::size_t kFewestInBatch = 64;  // points: fewer are not worth a thread's while
+constexpr double kSmallestEntry = 1e-12;    // keeps a pose or point that nothing sees from being singular
 
 /// From the first camera to the one that holds the scale.
 Eigen::Vector3d ScaleBaseline(const BundleProblem& problem) {
   return (problem.T_cam_world[problem.scale_frame] * problem.T_cam_world.front().Inverse()).translation();
+}
+
+/// Batches of points in order, of which none shares a pose with the next but one. So every other batch may be worked on
+/// at once, and every pose gets its terms in the same order whatever the number of threads.
+std::vector<std::size_t> CutIntoBatches(const BundleProblem& problem, const std::vector<std::size_t>& begin) {
+  const std::size_t count = problem.points.size();
+  std::vector<int> earliest(count + 1, std::numeric_limits<int>::max());  // frame of this point and all after it
+  for (std::size_t p = count; p-- > 0;) {
+    earliest[p] = earliest[p + 1];
+    if (begin[p] < begin[p + 1]) earliest[p] = std::min(earliest[p], problem.observations[begin[p]].frame);
+  }
+  std::vector<std::size_t> batches = {0};
+  int last_before = -1;  // frame of the batch before the present one
+  int last = -1;
+  for (std::size_t p = 0; p < count; ++p) {
+    if (p - batches.back() >= kFewestInBatch && earliest[p] > last_before) {
+      batches.push_back(p);
+      last_before = std::exchange(last, -1);
+    }
+    if (begin[p] < begin[p + 1]) last = std::max(last, problem.observations[begin[p + 1] - 1].frame);
+  }
+  batches.push_back(count);
+  return batches;
 }
 
 }  // namespace
@@ -54,10 +80,12 @@ Eigen::Vector2d TrackEquations::Weighted(std::size_t i, Eigen::Matrix<double, 2,
 }
 
 BundleEquations::BundleEquations(const BundleProblem& problem, const ErrorModel& model,
-                                 const std::vector<std::size_t>& begin)
+                                 const std::vector<std::size_t>& begin, ThreadPool* pool)
     : problem_(problem),
       model_(model),
       begin_(begin),
+      pool_(pool),
+      batches_(CutIntoBatches(problem, begin)),
       scale_length_(problem.scale_frame < 0 ? 1.0 : ScaleBaseline(problem).norm()),
       poses_(BundleSkyline(problem)),
       reduced_(poses_),
@@ -67,10 +95,25 @@ BundleEquations::BundleEquations(const BundleProblem& problem, const ErrorModel&
       inverses_(problem.points.size()),
       point_gradients_(problem.points.size()) {}
 
+void BundleEquations::ForEachPoint(const std::function<void(std::size_t)>& work) {
+  const std::size_t count = batches_.size() - 1;
+  for (std::size_t first = 0; first < 2; ++first) {
+    const auto batch = [&](std::size_t i) {
+      for (std::size_t p = batches_[first + 2 * i]; p < batches_[first + 2 * i + 1]; ++p) work(p);
+    };
+    const std::size_t batches = (count + 1 - first) / 2;
+    if (pool_) {
+      pool_->ForEach(batches, batch);
+    } else {
+      for (std::size_t i = 0; i < batches; ++i) batch(i);
+    }
+  }
+}
+
 void BundleEquations::Linearize() {
   poses_.SetZero();
   pose_gradient_ = Eigen::VectorXd::Zero(Eigen::Index{6} * reduced_.rows());
-  for (std::size_t p = 0; p < problem_.points.size(); ++p) LinearizePoint(p);
+  ForEachPoint([&](std::size_t p) { LinearizePoint(p); });
   if (problem_.scale_frame >= problem_.fixed_frames) LinearizeScale();
 }
 
@@ -88,12 +131,13 @@ void BundleEquations::LinearizeScale() {
 void BundleEquations::LinearizePoint(std::size_t p) {
   point_blocks_[p].setZero();
   point_gradients_[p].setZero();
-  track_.Linearize(problem_, model_, begin_[p], begin_[p + 1]);
+  thread_local TrackEquations track;
+  track.Linearize(problem_, model_, begin_[p], begin_[p + 1]);
   Eigen::Matrix<double, 2, 3> by_point;
   for (std::size_t i = begin_[p]; i < begin_[p + 1]; ++i) {
     const std::size_t k = i - begin_[p];
-    const BundleJacobian& sighting = track_.sightings[k];
-    const Eigen::Vector2d error = track_.Weighted(k, &by_point);
+    const BundleJacobian& sighting = track.sightings[k];
+    const Eigen::Vector2d error = track.Weighted(k, &by_point);
     point_blocks_[p].noalias() += sighting.by_point.transpose().lazyProduct(by_point);
     point_gradients_[p].noalias() += sighting.by_point.transpose() * error;
     cross_[i].setZero();
@@ -104,11 +148,11 @@ void BundleEquations::LinearizePoint(std::size_t p) {
     pose_gradient_.segment<6>(Eigen::Index{6} * row) += pulls_[i];
     cross_[i].noalias() = turned.lazyProduct(by_point);
     for (std::size_t l = 0; l <= k; ++l) {
-      const double information = track_.information(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l));
+      const double information = track.information(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l));
       const int column = Pose(begin_[p] + l);
       if (information == 0.0 || column < 0) continue;
       const Eigen::Matrix<double, 6, 2> weighted = information * turned;
-      poses_.At(row, column).noalias() += weighted.lazyProduct(track_.sightings[l].by_pose);
+      poses_.At(row, column).noalias() += weighted.lazyProduct(track.sightings[l].by_pose);
     }
   }
 }
@@ -120,7 +164,7 @@ void BundleEquations::Reduce(double lambda, Eigen::VectorXd* right) {
     reduced_.At(i, i).diagonal() *= 1.0 + lambda;
     reduced_.At(i, i).diagonal().array() += kSmallestEntry;
   }
-  for (std::size_t p = 0; p < problem_.points.size(); ++p) EliminatePoint(p, lambda, right);
+  ForEachPoint([&](std::size_t p) { EliminatePoint(p, lambda, right); });
 }
 
 bool BundleEquations::Factorize() {

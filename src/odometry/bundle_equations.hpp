@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -47,7 +48,8 @@ class BundleEquations {
  public:
   /// `begin[p]` is the first observation of point p, `begin[p + 1]` the end of its observations. What is referred to
   /// must outlive this object. The present distance of the scale frame is the one that is held.
-  BundleEquations(const BundleProblem& problem, const ErrorModel& model, const std::vector<std::size_t>& begin);
+  BundleEquations(const BundleProblem& problem, const ErrorModel& model, const std::vector<std::size_t>& begin,
+                  ThreadPool* pool);
 
   void Linearize();
 
@@ -61,6 +63,8 @@ class BundleEquations {
 
  private:
   int Pose(std::size_t observation) const { return problem_.observations[observation].frame - problem_.fixed_frames; }
+  /// Calls work(p) for all points, on all threads, no two of which see the same pose at once.
+  void ForEachPoint(const std::function<void(std::size_t)>& work);
   void LinearizePoint(std::size_t p);
   void LinearizeScale();
   /// The reduced system into `reduced_` and `right`.
@@ -70,8 +74,9 @@ class BundleEquations {
   const BundleProblem& problem_;
   const ErrorModel& model_;
   const std::vector<std::size_t>& begin_;
+  ThreadPool* pool_;
+  std::vector<std::size_t> batches_;  // of points: where each begins, and the end of all
   double scale_length_;
-  TrackEquations track_;
   BlockSkyline poses_;    // the poses' part
   BlockSkyline reduced_;  // the same without the points
   std::vector<Eigen::Matrix<double, 6, 3>> cross_;

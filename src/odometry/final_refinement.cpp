@@ -47,12 +47,12 @@ void DropContradictions(BundleProblem* problem) {
 
 /// Rounds of adjustment, each with the noise that the one before has left; returns the last round's options.
 BundleOptions Adjust(const FinalRefinementOptions& options, const std::function<void(double)>& progress,
-                     BundleProblem* problem) {
+                     ThreadPool* pool, BundleProblem* problem) {
   BundleOptions last{.iterations = options.iterations, .drift = options.drift};
   for (int round = 0; round < options.rounds; ++round) {
     const double sigma_px = MeasureNoise(BundleInnovations(*problem, options.drift));
     last.loss_px = kCauchyEfficient * sigma_px;
-    const auto summary = AdjustBundle(last, problem);
+    const auto summary = AdjustBundle(last, problem, pool);
     spdlog::debug(
         "odometry: {} frames, {} points, {} sightings, noise {:.2f} px: cost {:.1f} to {:.1f} in {} iterations",
         problem->T_cam_world.size(), problem->points.size(), problem->observations.size(), sigma_px,
@@ -197,10 +197,10 @@ void Register(Parameters& parameters, FinalRefinementOptions& options) {
 }
 
 void RefineSegment(const FinalRefinementOptions& options, const std::vector<Frame>& frames, int before, int after,
-                   const std::function<void(double)>& progress, Segment* segment) {
+                   const std::function<void(double)>& progress, ThreadPool* pool, Segment* segment) {
   RunBundle run = BuildRunBundle(options, frames, *segment);
-  const BundleOptions adjusted = Adjust(options, progress, &run.bundle);
-  auto covariances = PoseCovariances(adjusted, run.bundle);
+  const BundleOptions adjusted = Adjust(options, progress, pool, &run.bundle);
+  auto covariances = PoseCovariances(adjusted, run.bundle, pool);
   covariances.resize(run.frames.size(), Eigen::Matrix<double, 6, 6>::Zero());
   const RefinedPoints points = TakePoints(run, options.drift, segment);
   PoseFiller filler(frames, points);

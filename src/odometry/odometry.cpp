@@ -29,7 +29,7 @@ std::vector<Segment> CutSegments(const FrameHandler& handler) {
 
 /// Refines every segment and carries each change of a segment's end on to those after it.
 void RefineSegments(const FinalRefinementOptions& options, const std::vector<Frame>& frames,
-                    const std::function<void(double)>& progress, std::vector<Segment>* segments) {
+                    const std::function<void(double)>& progress, ThreadPool* pool, std::vector<Segment>* segments) {
   SE3 T_new_old;  // of the world
   int before = 0;
   const double count = static_cast<double>(segments->size());
@@ -41,7 +41,7 @@ void RefineSegments(const FinalRefinementOptions& options, const std::vector<Fra
     const int end = segment.frames.back();
     const int after = i + 1 < segments->size() ? (*segments)[i + 1].frames.front() : static_cast<int>(frames.size());
     RefineSegment(
-        options, frames, before, after, [&](double share) { progress((static_cast<double>(i) + share) / count); },
+        options, frames, before, after, [&](double share) { progress((static_cast<double>(i) + share) / count); }, pool,
         &segment);
     const auto at_end = std::ranges::lower_bound(segment.frames, end);
     const SE3& new_end = segment.T_cam_world[static_cast<std::size_t>(at_end - segment.frames.begin())];
@@ -99,9 +99,10 @@ OdometryResult RunOdometry(const Tracks& tracks, const Camera& camera, const Odo
   std::vector<Segment> segments = CutSegments(handler);
   segments.back().points = handler.Points();
   if (options.final_refinement.enabled) {
+    ThreadPool pool(threads);
     RefineSegments(
         options.final_refinement, frames,
-        [&](double share) { progress(kTrackingShare + (1.0 - kTrackingShare) * share); }, &segments);
+        [&](double share) { progress(kTrackingShare + (1.0 - kTrackingShare) * share); }, &pool, &segments);
   }
   for (const Segment& segment : segments) {
     for (std::size_t i = 0; i < segment.frames.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <functional>
 #include <vector>
 
+#include "evo/core/parallel.hpp"
 #include "evo/core/parameters.hpp"
 #include "evo/odometry/frame.hpp"
 #include "evo/odometry/point.hpp"
@@ -36,6 +37,6 @@ struct Segment {
 /// points, also of frames in [before, after) that the tracking had not reached. The first pose and the distance of the
 /// farthest stay. `frames` are all frames of the run. A track may come back as several points: long ones are cut.
 void RefineSegment(const FinalRefinementOptions& options, const std::vector<Frame>& frames, int before, int after,
-                   const std::function<void(double)>& progress, Segment* segment);
+                   const std::function<void(double)>& progress, ThreadPool* pool, Segment* segment);
 
 }  // namespace evo
