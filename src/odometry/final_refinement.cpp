@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <unordered_map>
 
@@ -19,6 +20,7 @@ constexpr double kMedianToSigma = 0.8493;   // the norm of a 2-d unit Gaussian h
 constexpr double kCauchyEfficient = 2.385;  // 95 % efficiency under Gaussian noise
 constexpr double kOutlierSigmas = 5.0;
 constexpr double kSmallestSigmaPx = 0.05;
+constexpr double kUncertain = 3.0;  // times the usual standard deviation
 constexpr double kSmallestInverseDepth = 1e-9;
 
 double Median(std::vector<double> values) {
@@ -137,10 +139,16 @@ class PoseFiller {
 
   PoseFiller(const std::vector<Frame>& frames, const RefinedPoints& points) : frames_(frames), points_(points) {}
 
-  /// From `frame` on in steps of `direction` up to but without `end`, while the poses can be estimated.
+  /// From `frame` on in steps of `direction` up to but without `end`, while the poses can be estimated and are not far
+  /// more uncertain than usual: the first pose, known by a few tracks just born, would turn the whole path.
   void Extend(int frame, int end, int direction, SE3 start, const Covariance& of_start) {
+    const double usual = turns_.empty() ? 0.0 : Median(turns_);
     for (; frame != end; frame += direction) {
       if (!Estimate(frame, start, of_start)) return;
+      if (turns_.back() > kUncertain * usual) {
+        poses_.erase(frame);
+        return;
+      }
       start = poses_.at(frame).T_cam_world;
     }
   }
@@ -151,11 +159,14 @@ class PoseFiller {
     if (!points_.Accepts(estimate)) return false;
     // The points are as uncertain as the bundle's poses nearby.
     poses_[frame] = {estimate.T_cam_world, estimate.inlier_count, of_start + estimate.covariance};
+    turns_.push_back(Turn(estimate));
     return true;
   }
 
   void Keep(int frame, const SE3& T_cam_world, const Covariance& covariance) {
-    poses_[frame] = {T_cam_world, points_.EstimatePose(frames_, frame, T_cam_world).inlier_count, covariance};
+    const PoseEstimate estimate = points_.EstimatePose(frames_, frame, T_cam_world);
+    poses_[frame] = {T_cam_world, estimate.inlier_count, covariance};
+    if (estimate.inlier_count > 0) turns_.push_back(Turn(estimate));
   }
 
   void MoveTo(Segment* segment) const {
@@ -177,9 +188,16 @@ class PoseFiller {
     int inliers = 0;
     Covariance covariance;
   };
+
+  /// How uncertain the camera's turn is if the points are known: standard deviation, rad.
+  static double Turn(const PoseEstimate& estimate) {
+    return std::sqrt(estimate.covariance.bottomRightCorner<3, 3>().trace());
+  }
+
   const std::vector<Frame>& frames_;
   const RefinedPoints& points_;
   std::map<int, Pose> poses_;
+  std::vector<double> turns_;  // of all poses
 };
 
 }  // namespace
