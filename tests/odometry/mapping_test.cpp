@@ -105,7 +105,9 @@ TEST(Mapper, GrowsTheMapAndDropsWhatFramesContradict) {
 TEST(Mapper, OldKeyFramesBringPointsEarlier) {
   std::vector<std::size_t> points;
   for (const int old_key_frames : {0, 6}) {
-    Mapper mapper({.old_key_frames = old_key_frames}, 1.0 / 226.0);
+    MapperOptions options;
+    options.old_key_frames = old_key_frames;
+    Mapper mapper(options, 1.0 / 226.0);
     for (const auto& message : Messages(30)) mapper.Process(message);
     points.push_back(mapper.map().points.size());
   }
