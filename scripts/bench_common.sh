@@ -97,7 +97,7 @@ calibration_of() {
 
 # json FILE KEY: the number of that key, which is unique in a manifest.
 json() {
-  sed -n "s/^ *\"$2\": \([0-9.e+-]*\),*$/\1/p" "$1" 2>/dev/null | head -n 1
+  sed -n "s/^ *\"$2\": \([0-9.e+-]*\),*$/\1/p" "$1" 2>/dev/null | head -n 1 || true
 }
 
 # quantity FILE NAME UNIT [THRESHOLD]: the value in a table of lifetimes or of track quality, or nothing.

@@ -68,9 +68,10 @@ everything (it is left out where a straight line does not determine it), "rotati
 "Covered" is the share of the time since the first pose that has poses, "anew" how often the map was started anew.
 Real-time factors are for one run, one at a time: of tracking and odometry together, and of the odometry alone.
 
-Bumps. Where a scene has 5 s before and after the start of its first bump, the growth is the error over 5 m (all pairs
-of poses so far apart, in the scale of the whole run) in the 5 s after it over that in the 5 s before. The scene
-\`bumps\` has one every 5 s and is compared with \`bumps_level\`, the same without any, which is made beside it.
+Bumps. Where a scene has 5 s before and after the start of its first bump, the growth is the mean error over 5 m (of all
+pairs of poses so far apart) in the 5 s after it over that in the 5 s before: in the scale of the whole run, where slow
+drift of the scale counts, too, and with a scale for each 5 s. The scene \`bumps\` has a bump every 5 s and is compared
+with \`bumps_level\`, the same without any, which is made beside it.
 
 Ingredients of --ablation:
 $(printf '  %s\n' "${ablations[@]}")
@@ -219,9 +220,10 @@ judge_bump() {
   for part in before after; do
     from=$3
     [ $part = after ] || from=$(stamp "$3" -5)
-    "$EVO_RUN" evaluate --estimate "$results/bump/trajectory.txt" --ground-truth "$(ground_truth_of "$2")" --align none \
-      --rpe 5m --rpe-pairs all --from-stamp "$from" --to-stamp "$(stamp "$from" 5)" --out "$results/bump/$part" \
-      --no-plots --quiet >/dev/null 2>"$results/bump/$part.txt" || true
+    "$EVO_RUN" evaluate --estimate "$results/bump/trajectory.txt" --ground-truth "$(ground_truth_of "$2")" \
+      --align none,origin-scale --rpe 5m --rpe-pairs all --set evaluation.rpe_pairs_from=truth --from-stamp "$from" \
+      --to-stamp "$(stamp "$from" 5)" --out "$results/bump/$part" --no-plots --quiet >/dev/null \
+      2>"$results/bump/$part.txt" || true
   done
 }
 

@@ -12,9 +12,9 @@ namespace fs = std::filesystem;
 
 class BenchOdometryTest : public EvoRunTest {
  protected:
-  void WriteScene(const std::string& name, const std::string& length_m = "0.5") const {
+  void WriteScene(const std::string& name, const std::string& length_m = "0.3") const {
     Write(name + ".yaml",
-          "scene:\n  kind: slider\n  calibration: davis240c\nmotion:\n  kind: slider\n  slider:\n    duration_s: 0.5\n"
+          "scene:\n  kind: slider\n  calibration: davis240c\nmotion:\n  kind: slider\n  slider:\n    duration_s: 0.3\n"
           "    length_m: " +
               length_m + "\nsimulation:\n  samples: 1\n  image_hz: 0\n");
   }
@@ -65,13 +65,13 @@ TEST_F(BenchOdometryTest, RowsSummaryTargetsAndPlots) {
   const auto rows = Table("odometry.csv");
   ASSERT_EQ(rows.size(), 6u);
   for (const auto& row : rows) {
-    EXPECT_EQ(row.at("scene"), "slider:0.5");
+    EXPECT_EQ(row.at("scene"), "slider:0.3");
     EXPECT_EQ(row.at("failure"), "");
     EXPECT_EQ(row.at("sim3_mean_planar_percent"), "") << "a straight line";
     EXPECT_EQ(row.at("bump_growth"), "");
-    for (const std::string name : {"recorded_s", "path_m", "coverage_share", "mean_planar_percent",
-                                   "max_planar_percent", "rotation_deg_per_m", "run_x_real_time",
-                                   "odometry_x_real_time", "cpu_s"}) {
+    for (const std::string name :
+         {"recorded_s", "path_m", "coverage_share", "mean_planar_percent", "max_planar_percent", "rotation_deg_per_m",
+          "run_x_real_time", "odometry_x_real_time", "cpu_s"}) {
       EXPECT_GT(std::stod(row.at(name)), 0.0) << name;
     }
     EXPECT_GE(std::stod(row.at("odometry_x_real_time")), std::stod(row.at("run_x_real_time")));
@@ -91,7 +91,7 @@ TEST_F(BenchOdometryTest, RowsSummaryTargetsAndPlots) {
   const double a = std::stod(rows[0].at("mean_planar_percent")), b = std::stod(rows[3].at("mean_planar_percent"));
   EXPECT_NEAR(std::stod(summary[0].at("mean_planar_percent_median")), (a + b) / 2, 1e-6);
   EXPECT_NEAR(std::stod(summary[0].at("mean_planar_percent_worst")), std::max(a, b), 1e-6);
-  EXPECT_NE(out.find("slider:0.5, 2 seeds"), std::string::npos) << out;
+  EXPECT_NE(out.find("slider:0.3, 2 seeds"), std::string::npos) << out;
   EXPECT_NE(out.find("\nTargets of ours"), std::string::npos) << out;
   EXPECT_NE(out.find("rebootstraps                worst     <=     0        -         0  met\n"), std::string::npos)
       << out;
@@ -129,7 +129,7 @@ TEST_F(BenchOdometryTest, BumpsAreComparedWithTheSameRoadWithoutThem) {
   ASSERT_EQ(Bench("--seeds 1 --config ours bumps.yaml"), 0) << err;
   const auto rows = Table("odometry.csv");
   ASSERT_EQ(rows.size(), 2u);
-  EXPECT_EQ(rows[0].at("scene") + ' ' + rows[1].at("scene"), "bumps:0.5 bumps_level:0.5");
+  EXPECT_EQ(rows[0].at("scene") + ' ' + rows[1].at("scene"), "bumps:0.3 bumps_level:0.3");
   EXPECT_EQ(rows[0].at("mean_planar_percent"), rows[1].at("mean_planar_percent")) << "a slider meets no bumps";
   EXPECT_NE(out.find("error_over_that_of_level"), std::string::npos) << out;
   EXPECT_NE(out.find("         1  met\n"), std::string::npos) << out;
