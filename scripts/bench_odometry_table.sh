@@ -163,9 +163,9 @@ print_tables() {
         }
         printf "%-" width "s", config[row]
         cell(14, "%.1f", "coverage_since_start_share", 100); cell(10, "%d", "rebootstraps")
-        cell(15, "%.3f", "mean_planar_percent"); cell(15, "%.3f", "max_planar_percent")
-        cell(15, "%.3f", "sim3_mean_planar_percent"); cell(15, "%.3f", "sim3_max_planar_percent")
-        cell(15, "%.2f", "rotation_deg_per_m", 100); cell(15, "%.2f", "bump_growth")
+        cell(15, "%.3g", "mean_planar_percent"); cell(15, "%.3g", "max_planar_percent")
+        cell(15, "%.3g", "sim3_mean_planar_percent"); cell(15, "%.3g", "sim3_max_planar_percent")
+        cell(15, "%.3g", "rotation_deg_per_m", 100); cell(15, "%.2f", "bump_growth")
         cell(15, "%.2f", "own_scale_bump_growth")
         cell(15, "%.1f", "run_x_real_time"); cell(15, "%.1f", "odometry_x_real_time")
         print (failures[row] > 0 ? "  failed: " failures[row] " of " seeds[row] : "")
@@ -293,6 +293,7 @@ set logscale y
 set yrange [0.01:*]
 set grid ytics
 set xtics rotate by -30
+set rmargin 15
 set key outside top horizontal
 set ylabel "mean planar error, % of the path"
 plot for [i=2:$((${#labels[@]} + 1))] "$name.dat" using i:xtic(1) title columnheader(i)
@@ -316,6 +317,8 @@ set terminal svg size 800,450 noenhanced background "white"
 set output "$name.svg"
 set datafile separator ","
 set title "$2"
+set logscale y
+set yrange [0.01:*]
 set grid
 set key outside top horizontal
 set xlabel "distance, m"
