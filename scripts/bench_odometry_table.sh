@@ -248,10 +248,10 @@ print_targets() {
     }'
 }
 
-# draw NAME: OUT/NAME.gnuplot, where there is gnuplot.
+# draw NAME: OUT/NAME.gnuplot, where there is gnuplot. No table is given up for a plot.
 draw() {
   if command -v gnuplot >/dev/null; then
-    (cd "$out" && gnuplot "$1.gnuplot")
+    (cd "$out" && gnuplot "$1.gnuplot") || echo "$out/$1.gnuplot could not be drawn" >&2
   else
     echo "gnuplot is not installed: $out/$1.gnuplot is left for later" >&2
   fi
@@ -318,7 +318,6 @@ set output "$name.svg"
 set datafile separator ","
 set title "$2"
 set logscale y
-set yrange [0.01:*]
 set grid
 set key outside top horizontal
 set xlabel "distance, m"
