@@ -58,7 +58,8 @@ fails its row says so, and the script ends with 1.
                            calib.txt or camchain*.yaml, and the ground truth; may be repeated; without scenes: only these
   --ablation               all of the ingredients below instead of the default configurations, on these scenes unless
                            others are named: ${ablation_scenes[*]}.
-                           Tables are then OUT/ablation*
+                           Tables are then OUT/ablation*. The final refinement mends much of what goes before
+                           it: --set "odometry.final_refinement=false NAME=VALUE" shows an ingredient without it
   --threads N              default 2
   --sequences DIR          default out/scenes
   --out DIR                default out/bench_odometry
