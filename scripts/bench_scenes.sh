@@ -133,9 +133,7 @@ run() {
 
 # summary ALIGNMENT COLUMN of the run `name`.
 summary() {
-  awk -F, -v alignment="$1" -v column="$2" '
-    NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i }
-    $2 == alignment { print $at[column] }' "$out/$name/summary.csv" 2>/dev/null || true
+  summary_cell "$out/$name/summary.csv" "$1" "$2"
 }
 
 header=scene,seed,simulated_s,path_m,events,negative_per_positive,simulate_wall_s,simulate_cpu_s,simulate_peak_memory_mb

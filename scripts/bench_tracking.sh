@@ -110,10 +110,6 @@ while [ $# -gt 0 ]; do
 done
 if [ ${#scenes[@]} -eq 0 ] && [ ${#recordings[@]} -eq 0 ]; then scenes=("${default_scenes[@]}"); fi
 
-# check OPTION VALUE PATTERN: refuses a VALUE that is not a list, separated by commas, of what PATTERN matches.
-check() {
-  [[ $2 =~ ^($3)(,($3))*$ ]] || fail "$1 cannot be '$2'; see --help"
-}
 check --seeds "$seeds" '[0-9]+'
 check --methods "$methods" 'em|klt'
 check --features "$features" '[1-9][0-9]*'
@@ -124,26 +120,13 @@ $scaling || ! $long || fail "--long goes with --scaling"
 [[ ${settings[*]} != *tracker.@(method|features)=* ]] || fail "--set cannot change these; see --methods and --features"
 for scene in "${scenes[@]}"; do scene_file "$scene" >/dev/null; done
 
-part_pattern='^(.+):(([0-9.]+)\+)?([0-9.]+)$' # FOLDER, FROM and SECONDS are groups 1, 3 and 4
-for recording in "${recordings[@]}"; do
-  [ -d "$recording" ] || [[ $recording =~ $part_pattern && -d ${BASH_REMATCH[1]} ]] ||
-    fail "there is no folder $recording"
-done
+check_recordings
 find_program
-
-# sequence SCENE SEED [OPTION...]: makes a sequence, unless it is there, and prints its folder.
-sequence() {
-  "$root/scripts/bench_scenes.sh" --sequences "$sequences" "${@:3}" --simulate-only --seeds "$2" "$1"
-}
-
-sum() {
-  awk -v a="$1" -v b="$2" 'BEGIN { printf "%.9g\n", a + b }'
-}
 
 # run_key FOLDER OPTION...: what results depend on.
 run_key() {
   printf '%s\n' "$program" "threads $threads, repeats $repeats" "${*:2}"
-  cat "$1/made_from.txt" 2>/dev/null || find -L "$1" -maxdepth 1 -type f -printf '%f %s %T@\n' | sort
+  identity "$1"
 }
 
 # track RESULTS FOLDER METHOD FEATURES [OPTION...]: tracks the recording in FOLDER `repeats` times, unless this is done
@@ -178,8 +161,7 @@ track() {
 judge() {
   local results=$1 truth last
   [ -e "$results/tracks.txt" ] && [ ! -e "$results/track_quality/manifest.json" ] || return 0
-  truth=$(find -L "$2" -maxdepth 1 -name '*_gt.hdf5' | head -n 1)
-  truth=${truth:-$(find -L "$2" -maxdepth 1 -name groundtruth.txt)}
+  truth=$(ground_truth_of "$2")
   [ -n "$truth" ] || return 0
   last=$(tail -n 1 "$results/tracks.txt" | cut -d ' ' -f 2)
   judge_tracks "$results" "$truth" "$(calibration_of "$2")" --no-plots --to-stamp "$last" 2>"$results/judging.txt" ||
@@ -202,15 +184,8 @@ measure() {
 
 # measure_recording FOLDER[:[FROM+]SECONDS]
 measure_recording() {
-  local folder=$1 interval=() part name from=0
-  if [ ! -d "$1" ]; then
-    [[ $1 =~ $part_pattern ]]
-    folder=${BASH_REMATCH[1]}
-    from=${BASH_REMATCH[3]:-0}
-    interval=(--from "$from" --to "$(sum "$from" "${BASH_REMATCH[4]}")")
-  fi
-  part=${1#"$folder"}
-  name=$(basename "$folder")
+  local folder interval name part
+  split_recording "$1"
   measure "$name$part" "" "$folder" "recordings/$name${part/:/_}" "${interval[@]}"
 }
 
@@ -225,10 +200,6 @@ measure_all() {
     done
   done
   for recording in "${recordings[@]}"; do measure_recording "$recording"; done
-}
-
-describe_machine() {
-  printf '\n%s\n' "$threads threads on $(nproc) processors$(sed -n 's/^model name.*:/,/p' /proc/cpuinfo | head -n 1)"
 }
 
 mkdir -p "$out"

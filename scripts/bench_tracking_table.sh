@@ -21,33 +21,6 @@ speed_cells() {
     }' "$1/times.csv"
 }
 
-# Of numbers in a text. mawk cannot sort.
-awk_median='
-  function sorted(text, values, n, i, j, value) {
-    n = split(text, values, " ")
-    for (i = 1; i <= n; ++i) {
-      value = values[i] + 0
-      for (j = i - 1; j > 0 && values[j] > value; --j) values[j + 1] = values[j]
-      values[j + 1] = value
-    }
-    return n
-  }
-  function median(text, values, n) {
-    n = sorted(text, values)
-    return n == 0 ? "" : (values[int((n + 1) / 2)] + values[int(n / 2) + 1]) / 2
-  }
-  function least(text, values) { return sorted(text, values) == 0 ? "" : values[1] }
-'
-
-# failure_of RESULTS: why there are no tracks, or none that could be judged, for a cell; or nothing.
-failure_of() {
-  if [ -e "$1/failure.txt" ]; then
-    tr ',"' ';'"'" <"$1/failure.txt"
-  elif [ -e "$1/judging.txt" ]; then
-    tail -n 1 "$1/judging.txt" | tr ',"' ';'"'" | sed 's/^/not judged: /'
-  fi
-}
-
 header=scene,seed,method,features,threads,repeats,$speed_header,truth,tracks_judged
 header+=,track_error_median_px,track_error_to_5_px_median_px,expected_age_at_5_px_share,expected_age_at_5_px_s
 header+=,tracks_over_3_px_share,positions_past_3_px_share,triangulation_residual_median_px
@@ -165,12 +138,7 @@ targets='
 
 # The medians on stdin beside the targets of their scenes.
 print_targets() {
-  awk -F, -v targets="${targets//$'\n'/;}" '
-    function verdict(value, comparison, limit) {
-      if (value == "") return "not measured"
-      if (value == limit) return comparison ~ /=/ ? "met" : "missed"
-      return (comparison ~ />/) == (value > limit) ? "met" : "missed"
-    }
+  awk -F, -v targets="${targets//$'\n'/;}" "$awk_verdict"'
     NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
     {
       for (name in at) value[$1, $3, $4, name] = $at[name]

@@ -53,6 +53,8 @@ void Register(Parameters& parameters, BootstrapOptions& options) {
                  "median parallax of the first map's points in degrees");
   parameters.Add("odometry.bootstrap.median_depth", &options.median_depth, 1e-3, 1e4,
                  "median depth given to the first map: sets the unit of length");
+  parameters.Add("odometry.bootstrap.refine", &options.refine,
+                 "bundle-adjust the first map with frames between its two");
 }
 
 Bootstrapper::Bootstrapper(const BootstrapOptions& options, const std::vector<Frame>& frames, double focal_px)
@@ -142,7 +144,9 @@ std::optional<Bootstrap> Bootstrapper::FromMotion(int first, int last, const std
   const double scale = options_.median_depth / Median(depths);
   for (Point& point : bootstrap.points) point.position *= scale;
   bootstrap.T_cam_world.back() = SE3(T_2_1.rotation(), scale * T_2_1.translation());
-  if (!TrackBetween(&bootstrap) || !Refine(&bootstrap) || !TrackBetween(&bootstrap)) {
+  const bool agrees =
+      TrackBetween(&bootstrap) && (!options_.refine || (Refine(&bootstrap) && TrackBetween(&bootstrap)));
+  if (!agrees) {
     Refuse("the frames between do not agree with the pair's motion");
     return std::nullopt;
   }

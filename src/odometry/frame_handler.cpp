@@ -13,8 +13,7 @@ namespace evo {
 
 namespace {
 
-constexpr double kDoubtful = 2.0;           // residuals this many times their usual size: depths are not measured
-constexpr double kScaleMemory = 0.95;       // of the running mean of that size
+constexpr double kScaleMemory = 0.95;       // of the running mean of the residuals
 constexpr double kPredictionSeconds = 0.5;  // a velocity older than this says nothing
 constexpr int kHighIndex = std::numeric_limits<int>::max();
 
@@ -22,6 +21,8 @@ constexpr int kHighIndex = std::numeric_limits<int>::max();
 
 void Register(Parameters& parameters, FrameHandlerOptions& options) {
   parameters.Add("odometry.lag", &options.lag, 1, 100, "frames after which a frame's depths enter the map");
+  parameters.Add("odometry.doubtful", &options.doubtful, 1, 1e6,
+                 "no depths from, and no key frame of, a frame whose residuals are this many times as large as usual");
   auto& key = options.key_frame;
   parameters.Add("odometry.key_frame.translation", &key.translation, 0.001, 10,
                  "translation since the last key frame over median depth");
@@ -33,6 +34,8 @@ void Register(Parameters& parameters, FrameHandlerOptions& options) {
                  "share of the tracks that the last key frame must have seen");
   parameters.Add("odometry.key_frame.min_disparity_px", &key.min_disparity_px, 0, 100,
                  "no key frame with less image motion in px than this");
+  parameters.Add("odometry.key_frame.every_frames", &key.every_frames, 0, 1000,
+                 "instead of these rules a key frame every so many frames; 0: by the rules");
   Register(parameters, options.bootstrap);
   Register(parameters, options.pose);
   Register(parameters, options.mapper);
@@ -124,7 +127,7 @@ bool FrameHandler::Track(int index) {
 
 void FrameHandler::Commit(int index, const Sighted& sighted, const PoseEstimate& estimate) {
   FrameMessage message;
-  message.hold = usual_scale_px_ > 0.0 && estimate.scale_px > kDoubtful * usual_scale_px_;
+  message.hold = usual_scale_px_ > 0.0 && estimate.scale_px > options_.doubtful * usual_scale_px_;
   usual_scale_px_ = usual_scale_px_ > 0.0 ? kScaleMemory * usual_scale_px_ + (1.0 - kScaleMemory) * estimate.scale_px
                                           : estimate.scale_px;
   for (std::size_t i = 0; i < sighted.tracks.size(); ++i) {
@@ -156,6 +159,7 @@ void FrameHandler::Remember(int index, const SE3& T_cam_world, bool key_frame, i
 
 bool FrameHandler::IsKeyFrame(int index, const SE3& T_cam_world, const Sighted& sighted) const {
   const auto& options = options_.key_frame;
+  if (options.every_frames > 0) return index - key_indices_.back() >= options.every_frames;
   const Frame& frame = frames_[index];
   const auto shared = Match(frames_[key_indices_.back()], frame);
   const double disparity = MedianDisparity(shared);

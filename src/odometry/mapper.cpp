@@ -9,7 +9,6 @@ namespace evo {
 
 namespace {
 
-constexpr int kOldKeyFrames = 6;       // that a new seed is measured with
 constexpr double kNearestShare = 0.5;  // of the near depth: where the seeds' range ends
 constexpr int kFixedKeyFrames = 2;     // of the window: they hold its place and scale
 constexpr double kOutlierShare = 0.4;  // of a point's history, to be dropped
@@ -24,6 +23,8 @@ void Register(Parameters& parameters, MapperOptions& options) {
   parameters.Add("odometry.loss_px", &options.loss_px, 0.05, 20, "width of the robust loss in px");
   parameters.Add("odometry.depth_filter.update_px", &options.update_px, 0, 20,
                  "image motion in px between two updates of the depth filter");
+  parameters.Add("odometry.depth_filter.old_key_frames", &options.old_key_frames, 0, 100,
+                 "earlier key frames that a new seed is measured with");
   parameters.Add("odometry.max_outliers", &options.max_outliers, 1, 1000,
                  "frames that must contradict a point before it may be dropped");
   Register(parameters, options.depth_filter);
@@ -128,7 +129,7 @@ void Mapper::SowSeeds(const Frame& frame) {
     filter_.AddSeed(feature, newest, depth.median, kNearestShare * depth.near);
     sown.features.push_back(feature);
   }
-  for (int i = newest - 1; i >= std::max(segment_begin_, newest - kOldKeyFrames); --i) {
+  for (int i = newest - 1; i >= std::max(segment_begin_, newest - options_.old_key_frames); --i) {
     Frame old = map_.key_frames[i];
     std::erase_if(old.features, [&](const Feature& feature) { return !sown.Find(feature.track); });
     filter_.Update(old, [&](int key) { return old.T_cam_world * map_.key_frames[key].T_cam_world.Inverse(); });

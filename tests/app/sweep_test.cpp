@@ -199,7 +199,7 @@ TEST_F(SweepTest, ConfigurationsAreAcceptedAndCalibrationsRead) {
     EXPECT_EQ(calibration.height, 260) << entry.path();
     ++files;
   }
-  EXPECT_EQ(files, 3);
+  EXPECT_EQ(files, 4);
 }
 
 }  // namespace

@@ -19,8 +19,8 @@ namespace {
 using testing::DriveCamera;
 using testing::MakeDrive;
 
-Bootstrap FirstMap(const std::vector<Frame>& frames) {
-  Bootstrapper bootstrapper({}, frames, DriveCamera().focal_px());
+Bootstrap FirstMap(const std::vector<Frame>& frames, const BootstrapOptions& options = {}) {
+  Bootstrapper bootstrapper(options, frames, DriveCamera().focal_px());
   for (int i = 0; i < static_cast<int>(frames.size()); ++i) {
     if (auto bootstrap = bootstrapper.Add(i)) return *bootstrap;
   }
@@ -39,6 +39,17 @@ TEST(Bootstrapper, FindsForwardMotion) {
     EXPECT_GT(cosine, std::cos(0.1)) << seed;
     EXPECT_GE(bootstrap.points.size(), 25u) << seed;
   }
+}
+
+TEST(Bootstrapper, TwoFramesMakeAFirstMapAlsoWithoutRefinement) {
+  const auto drive = MakeDrive({.seconds = 2.0, .stop = false, .bumps = false});
+  const auto frames = BuildFrames(drive.tracks, DriveCamera());
+  const Bootstrap refined = FirstMap(frames);
+  const Bootstrap plain = FirstMap(frames, {.refine = false});
+  EXPECT_EQ(plain.T_cam_world.size(), static_cast<std::size_t>(plain.last - plain.first + 1));
+  EXPECT_GE(plain.points.size(), 25u);
+  EXPECT_GT(plain.T_cam_world.back().translation().norm(), 0.0);
+  EXPECT_NE(plain.T_cam_world.back().translation(), refined.T_cam_world.back().translation());
 }
 
 /// Frames of a drive with their true poses, as the pose thread would send them.
@@ -89,6 +100,23 @@ TEST(Mapper, GrowsTheMapAndDropsWhatFramesContradict) {
   EXPECT_TRUE(removed);
   EXPECT_GT(mapper.map().points.size(), initial + 50);
   EXPECT_EQ(mapper.map().key_frames.size(), 12u);
+}
+
+TEST(Mapper, OldKeyFramesBringPointsEarlier) {
+  std::vector<std::size_t> points;
+  for (const int old_key_frames : {0, 6}) {
+    MapperOptions options;
+    options.old_key_frames = old_key_frames;
+    options.depth_filter.max_age = 1;  // most seeds are given up and sown again
+    options.depth_filter.convergence = 500.0;
+    Mapper mapper(options, 1.0 / 226.0);
+    points.push_back(0);
+    for (const auto& message : Messages(60)) {
+      mapper.Process(message);
+      points.back() += mapper.map().points.size();
+    }
+  }
+  EXPECT_GT(points[1], points[0]);  // sums over the frames
 }
 
 TEST(MappingThread, GivesTheSameUpdatesAsWithoutAThread) {

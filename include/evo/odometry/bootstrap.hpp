@@ -19,6 +19,7 @@ struct BootstrapOptions {
   int min_inliers = 15;
   double min_parallax_deg = 1.0;  ///< median angle under which a point sees the two cameras
   double median_depth = 10.0;     ///< the map's scale: monocular odometry cannot know it
+  bool refine = true;             ///< the first map over the frames between the pair, too
 };
 void Register(Parameters& parameters, BootstrapOptions& options);
 

@@ -21,10 +21,12 @@ struct KeyFrameOptions {
   double disparity_px = 40.0;     ///< median image motion since the last key frame
   double min_shared_ratio = 0.8;  ///< fewer of the present tracks seen by the last key frame: time for seeds
   double min_disparity_px = 3.0;  ///< never a key frame with less image motion: the camera stands
+  int every_frames = 0;           ///< instead of all these rules a key frame every so many frames; 0: the rules
 };
 
 struct FrameHandlerOptions {
-  int lag = 2;  ///< frames after which a frame's depths are in the map, whatever the number of threads
+  int lag = 2;            ///< frames after which a frame's depths are in the map, whatever the number of threads
+  double doubtful = 2.0;  ///< residuals this many times their usual size: no depths are measured, no key frame
   BootstrapOptions bootstrap;
   PoseOptions pose;
   KeyFrameOptions key_frame;
