@@ -114,7 +114,8 @@ void MovePoints(const std::vector<Frame>& frames, const std::vector<SE3>& old_po
   }
 }
 
-/// Every step from pose to pose with the scale that holds there.
+/// Every step from pose to pose with the scale that holds there. The covariances only change their unit: what the
+/// ground has added to the knowledge of the poses is not in them.
 void Rescale(const std::vector<double>& scales, const std::vector<Frame>& frames, std::vector<Segment>* segments) {
   std::size_t pose = 0;
   Eigen::Vector3d old_position = Eigen::Vector3d::Zero();
@@ -123,8 +124,9 @@ void Rescale(const std::vector<double>& scales, const std::vector<Frame>& frames
     const std::vector<SE3> old_poses = segment.T_cam_world;
     const auto begin = scales.begin() + static_cast<std::ptrdiff_t>(pose);
     for (std::size_t i = 0; i < segment.covariances.size(); ++i) {
-      segment.covariances[i].topRows<3>() *= begin[static_cast<std::ptrdiff_t>(i)];
-      segment.covariances[i].leftCols<3>() *= begin[static_cast<std::ptrdiff_t>(i)];
+      const double scale = begin[static_cast<std::ptrdiff_t>(i)];
+      segment.covariances[i].topRows<3>() *= scale;
+      segment.covariances[i].leftCols<3>() *= scale;
     }
     for (SE3& T_cam_world : segment.T_cam_world) {
       const SE3 T_world_cam = T_cam_world.Inverse();
