@@ -51,7 +51,9 @@ double MostCommon(const std::vector<GroundSighting>& sightings) {
   std::ranges::sort(votes, {}, &Vote::at);
   Vote best{0.0, 0.0};
   std::size_t begin = 0;
-  for (double at = votes.front().at; at <= votes.back().at + kVoteStep; at += kVoteStep) {
+  const int steps = static_cast<int>((votes.back().at - votes.front().at) / kVoteStep) + 1;
+  for (int step = 0; step <= steps; ++step) {
+    const double at = votes.front().at + kVoteStep * step;
     while (begin < votes.size() && votes[begin].at < at - 3.0 * kVoteWidth) ++begin;
     double sum = 0.0;
     for (std::size_t i = begin; i < votes.size() && votes[i].at < at + 3.0 * kVoteWidth; ++i) {

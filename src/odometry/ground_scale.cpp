@@ -44,6 +44,7 @@ PoseList ListPoses(const std::vector<Segment>& segments) {
 
 double UsualDistance(const std::vector<TrackPoint>& points, const PoseList& poses) {
   std::vector<double> distances;
+  distances.reserve(points.size());
   for (const auto& point : points) distances.push_back((point.position - poses.positions[point.pose]).norm());
   if (distances.empty()) return 0.0;
   const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
