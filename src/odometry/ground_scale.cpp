@@ -20,7 +20,7 @@ constexpr double kWindow = 3.0;       // heights to either side that the path is
 constexpr double kReach = 40.0;       // heights between the camera that saw a track and its place by the path
 // Sideways over below, of tracks that may lie on the ground. Farther to the side there are kerbs and parked cars, and
 // near the image's border the tracks of a road drift outwards.
-constexpr double kCone = 1.0;
+constexpr double kCone = 0.8;
 
 /// All poses of a run in order of time.
 struct PoseList {
