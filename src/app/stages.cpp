@@ -55,6 +55,12 @@ void DrawTrackFigures(const std::filesystem::path& folder, const TrackingOutcome
   gnuplot.Draw("live_features", LiveFeaturesFigure("live_features", outcome.result.tracks, outcome.result.frames));
 }
 
+std::string FormatGroundScale(const GroundScale& scale) {
+  if (!scale.found) return "scale      arbitrary: no ground found\n";
+  return Format("scale      metres, from %zu tracks on the ground along %.0f %% of the path, uncertain by %.2f %%\n",
+                scale.tracks, 100.0 * scale.covered, 100.0 * scale.error);
+}
+
 }  // namespace
 
 StageContext::StageContext(const CommonOptions& common, StageOptions stage_options, std::vector<std::string> results,
@@ -167,6 +173,8 @@ OdometryResult RunOdometryStage(StageContext* context, const Tracks& tracks, con
   context->record.AddCount("poses", result.trajectory.size());
   context->record.AddCount("frames_lost", result.lost.size());
   context->record.AddCount("map_points", result.points.size());
+  context->record.manifest.scale = result.ground && result.ground->found ? "ground" : "arbitrary";
+  if (result.ground) context->record.AddCount("ground_tracks", result.ground->tracks);
   return result;
 }
 
@@ -181,7 +189,8 @@ std::string FormatTracking(const TrackingOutcome& outcome) {
 std::string FormatOdometry(const OdometryResult& result) {
   return Format("odometry   %zu poses of %d frames, %d key frames, %zu points, started anew %zu times\n",
                 result.trajectory.size(), result.frames, result.key_frames, result.points.size(),
-                result.bootstraps.empty() ? std::size_t{0} : result.bootstraps.size() - 1);
+                result.bootstraps.empty() ? std::size_t{0} : result.bootstraps.size() - 1) +
+         (result.ground ? FormatGroundScale(*result.ground) : "");
 }
 
 std::string FormatSpeed(const Manifest& manifest, int threads) {

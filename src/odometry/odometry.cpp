@@ -75,6 +75,7 @@ void Register(Parameters& parameters, OdometryOptions& options) {
   Register(parameters, options.resampling);
   Register(parameters, options.frame_handler);
   Register(parameters, options.final_refinement);
+  Register(parameters, options.ground);
 }
 
 OdometryResult RunOdometry(const Tracks& tracks, const Camera& camera, const OdometryOptions& options, int threads,
@@ -104,6 +105,7 @@ OdometryResult RunOdometry(const Tracks& tracks, const Camera& camera, const Odo
         options.final_refinement, frames,
         [&](double share) { progress(kTrackingShare + (1.0 - kTrackingShare) * share); }, &pool, &segments);
   }
+  if (options.ground.camera_height_m > 0.0) result.ground = ScaleByGround(options.ground, frames, &segments);
   for (const Segment& segment : segments) {
     for (std::size_t i = 0; i < segment.frames.size(); ++i) {
       result.trajectory.push_back({frames[segment.frames[i]].t, segment.T_cam_world[i].Inverse()});

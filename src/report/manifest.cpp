@@ -71,6 +71,7 @@ Manifest FromJson(const Json& json) {
   for (const auto& [name, count] : Object(json, "counts").items()) manifest.counts.emplace_back(name, count);
   for (const auto& stamp : json.at("rebootstraps")) manifest.rebootstraps.push_back(ParseStamp(stamp));
   for (const auto& [stage, seconds] : Object(json, "wall_time_s").items()) manifest.stages.push_back({stage, seconds});
+  if (json.contains("scale")) json.at("scale").get_to(manifest.scale);
   if (json.contains("recorded_s")) manifest.recorded_s = json.at("recorded_s").get<double>();
   AppendParameters(Object(json, "parameters"), "", &manifest.parameters);
   return manifest;
@@ -129,6 +130,7 @@ void WriteManifest(const std::filesystem::path& path, const Manifest& manifest) 
   for (const auto& [name, count] : manifest.counts) json["counts"][name] = count;
   json["rebootstraps"] = Json::array();
   for (const TimeNs stamp : manifest.rebootstraps) json["rebootstraps"].push_back(FormatTime(stamp));
+  if (!manifest.scale.empty()) json["scale"] = manifest.scale;
   json["wall_time_s"] = Json::object();
   for (const auto& stage : manifest.stages) json["wall_time_s"][stage.stage] = stage.seconds;
   if (manifest.recorded_s) json["recorded_s"] = *manifest.recorded_s;

@@ -118,6 +118,18 @@ TEST_F(PipelineTest, RunKeepsItsQualityInTheHand) {
   ExpectQuality("result", {.path_m = 0.32, .origin_scale_percent = 3.0, .sim3_percent = 0.5, .lifetime_frames = 15.0});
 }
 
+TEST_F(PipelineTest, TheCamerasHeightGivesTheScale) {
+  const std::string height = " --set odometry.ground.camera_height_m=";
+  ASSERT_EQ(Run("run --no-plots --events " + Quote(Sample()) + height + "1.5" + To("metres")), 0) << err;
+  EXPECT_NEAR(std::stod(Summary("metres", "origin-scale")["scale"]), 1.0, 0.02);
+  EXPECT_EQ(nlohmann::json::parse(ReadFile(folder / "metres" / "manifest.json"))["scale"], "ground");
+  // A hand-held camera does not drive over a road.
+  ASSERT_EQ(Run("run --no-plots --events " + Quote(BundledSequence("handheld")) + height + "1.5" + To("hand")), 0)
+      << err;
+  EXPECT_NE(err.find("warning"), std::string::npos) << err;
+  EXPECT_EQ(nlohmann::json::parse(ReadFile(folder / "hand" / "manifest.json"))["scale"], "arbitrary");
+}
+
 TEST_F(PipelineTest, SameBytesForAnyNumberOfThreadsAndWithoutTheTruth) {
   ASSERT_EQ(Run("run --no-plots --threads 1 --to 0.9 --events " + Quote(Sample()) + To("1")), 0) << err;
   for (const std::string other : {"2", "2 again", "3"}) {

@@ -168,6 +168,7 @@ TEST_F(TablesTest, ManifestHoldsWhatWasRun) {
   manifest.counts = {{"poses", 7}};
   manifest.stages = {{"evaluate", 0.5}};
   manifest.rebootstraps = {1'500'000'000};
+  manifest.scale = "ground";
   WriteManifest(folder / "manifest.json", manifest);
   const auto json = nlohmann::json::parse(ReadFile(folder / "manifest.json"));
   EXPECT_EQ(json["tool"], "evo-run");
@@ -181,6 +182,8 @@ TEST_F(TablesTest, ManifestHoldsWhatWasRun) {
   EXPECT_EQ(json["counts"]["poses"], 7);
   EXPECT_EQ(json["wall_time_s"]["evaluate"], 0.5);
   EXPECT_EQ(json["rebootstraps"][0], "1.500000000");
+  EXPECT_EQ(json["scale"], "ground");
+  EXPECT_EQ(ReadManifest(folder / "manifest.json").scale, "ground");
   EXPECT_GT(json["peak_memory_mb"].get<double>(), 1.0);
   EXPECT_GT(json["cpu_time_s"].get<double>(), 0.0);
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "evo/core/parameters.hpp"
@@ -11,6 +12,7 @@
 #include "evo/io/tracks.hpp"
 #include "evo/odometry/final_refinement.hpp"
 #include "evo/odometry/frame_handler.hpp"
+#include "evo/odometry/ground_scale.hpp"
 #include "evo/odometry/point.hpp"
 #include "evo/odometry/resampling.hpp"
 
@@ -20,6 +22,7 @@ struct OdometryOptions {
   ResamplingOptions resampling;
   FrameHandlerOptions frame_handler;
   FinalRefinementOptions final_refinement;
+  GroundOptions ground;
 };
 void Register(Parameters& parameters, OdometryOptions& options);
 
@@ -33,14 +36,15 @@ struct OdometryResult {
   bool resampled = false;     ///< the tracks were asynchronous
   int frames = 0;             ///< with and without a pose
   int key_frames = 0;
-  std::vector<TimeNs> bootstraps;  ///< first frame of every segment of the map; more than one: the scale was lost
-  std::vector<TimeNs> lost;        ///< frames between the first and the last pose that have none
+  std::vector<TimeNs> bootstraps;     ///< first frame of every segment of the map; more than one: the scale was lost
+  std::optional<GroundScale> ground;  ///< if the camera's height was given
+  std::vector<TimeNs> lost;           ///< frames between the first and the last pose that have none
 };
 
 /// Monocular visual odometry from feature tracks: the paper's pose and depth threads, then one refinement over the
-/// whole run. The scale is arbitrary. The result does not depend on `threads` (2 or more: the depths get their own
-/// thread). Throws Error: kInput if tracks and camera do not belong together, kTrackingLost if no map could ever be
-/// started.
+/// whole run. The scale is arbitrary unless the camera's height above the road is given. The result does not depend on
+/// `threads` (2 or more: the depths get their own thread). Throws Error: kInput if tracks and camera do not belong
+/// together, kTrackingLost if no map could ever be started.
 OdometryResult RunOdometry(const Tracks& tracks, const Camera& camera, const OdometryOptions& options, int threads,
                            const std::function<void(double)>& progress);
 

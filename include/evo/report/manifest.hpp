@@ -33,6 +33,7 @@ struct Manifest {
   std::vector<StageTime> stages;
   std::optional<double> recorded_s;  ///< time from the first tracked event frame to the last
   std::vector<TimeNs> rebootstraps;  ///< stamps of the frames at which the odometry started anew
+  std::string scale;                 ///< what the trajectory's unit is: "arbitrary" or "ground" (m); empty: no odometry
 };
 
 /// manifest.json; processor time and peak memory of this process so far are added. Throws Error (kOutput).
