@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <array>
 #include <random>
+#include <utility>
 
 #include "evo/odometry/block_skyline.hpp"
 
@@ -216,6 +218,45 @@ TEST(BundleAdjuster, CovariancesAreHonest) {
     const double normalized = MeanNormalizedError(noise_px, drift_px, expected_drift);
     EXPECT_GT(normalized, 0.5) << noise_px << " " << drift_px;
     EXPECT_LT(normalized, 2.0) << noise_px << " " << drift_px;
+  }
+}
+
+/// The points in the order in which they come into view, as in a run: only so can threads share the work.
+BundleProblem InOrderOfFrames(BundleProblem problem) {
+  std::ranges::stable_sort(problem.observations, {}, [&](const BundleObservation& observation) {
+    return std::pair(problem.points[observation.point].anchor, observation.point);
+  });
+  std::vector<BundlePoint> points;
+  int last = -1;
+  for (auto& observation : problem.observations) {
+    if (observation.point != last) points.push_back(problem.points[observation.point]);
+    last = observation.point;
+    observation.point = static_cast<int>(points.size()) - 1;
+  }
+  problem.points = points;
+  return problem;
+}
+
+TEST(BundleAdjuster, ThreadsChangeNothing) {
+  auto start = InOrderOfFrames(Drive(150, 1500, 0.3, 7));
+  start.fixed_frames = 2;
+  Disturb(&start, 0.002);
+  const BundleOptions options{.iterations = 4, .drift = 0.1};
+  auto alone = start;
+  AdjustBundle(options, &alone);
+  const auto alone_covariances = PoseCovariances(options, alone);
+  for (const int threads : {1, 2, 4}) {
+    ThreadPool pool(threads);
+    auto together = start;
+    AdjustBundle(options, &together, &pool);
+    const auto covariances = PoseCovariances(options, together, &pool);
+    for (std::size_t i = 0; i < alone.T_cam_world.size(); ++i) {
+      EXPECT_EQ(alone.T_cam_world[i].Matrix(), together.T_cam_world[i].Matrix()) << threads << " " << i;
+      EXPECT_EQ(alone_covariances[i], covariances[i]) << threads << " " << i;
+    }
+    for (std::size_t p = 0; p < alone.points.size(); ++p) {
+      EXPECT_EQ(alone.points[p].inverse_depth, together.points[p].inverse_depth) << threads << " " << p;
+    }
   }
 }
 
