@@ -9,6 +9,7 @@
 #include "evo/geometry/two_view.hpp"
 #include "evo/odometry/bundle_adjuster.hpp"
 #include "evo/odometry/pose_optimizer.hpp"
+#include "odometry/median.hpp"
 
 namespace evo {
 
@@ -24,12 +25,6 @@ std::string Decimal(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.1f", value);
   return text;
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 double Parallax(const Feature& first, const Feature& second, const SE3& T_2_1) {

@@ -2,7 +2,6 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <functional>
 #include <limits>
 #include <numeric>
 #include <random>
@@ -54,10 +53,10 @@ std::vector<InnovationStep> InnovationSteps(const BundleProblem& problem, double
   const auto begin = FirstObservations(problem);
   for (std::size_t p = 0; p < problem.points.size(); ++p) {
     magnifications.clear();
+    const BundlePoint& point = problem.points[p];
+    const SE3 T_world_anchor = problem.T_cam_world[point.anchor].Inverse();
     for (std::size_t i = begin[p]; i < begin[p + 1]; ++i) {
-      const BundlePoint& point = problem.points[p];
-      const SE3 T_cam_anchor =
-          problem.T_cam_world[problem.observations[i].frame] * problem.T_cam_world[point.anchor].Inverse();
+      const SE3 T_cam_anchor = problem.T_cam_world[problem.observations[i].frame] * T_world_anchor;
       const double depth_share = ScaledInCamera(T_cam_anchor, point.inverse_depth).z();  // of that at first
       magnifications.push_back(1.0 / std::clamp(depth_share, 1.0 / kLargestMagnification, kLargestMagnification));
     }
@@ -91,6 +90,18 @@ void ForEachTrack(const BundleProblem& problem, const Function& f) {
     TrackErrors(problem, begin[p], begin[p + 1], &errors);
     f(begin[p], errors);
   }
+}
+
+/// What `filter`, Innovate or EstimateDrift, makes of the errors of every track.
+template <typename TrackFilter>
+std::vector<Eigen::Vector2d> FilterErrors(const BundleProblem& problem, double drift, const TrackFilter& filter) {
+  std::vector<Eigen::Vector2d> filtered, all;
+  const auto steps = InnovationSteps(problem, drift);
+  ForEachTrack(problem, [&](std::size_t begin, const std::vector<Eigen::Vector2d>& errors) {
+    filter(std::span(steps).subspan(begin, errors.size()), errors, &filtered);
+    all.insert(all.end(), filtered.begin(), filtered.end());
+  });
+  return all;
 }
 
 /// What the observations [begin, end) of one point cost.
@@ -138,21 +149,12 @@ double SettlePoint(const ErrorModel& model, std::size_t begin, std::size_t end, 
   return cost;
 }
 
-/// Calls work(p) for all points, each of which writes only what is its own.
-void ForEachPoint(std::size_t count, ThreadPool* pool, const std::function<void(std::size_t)>& work) {
-  if (pool) {
-    pool->ForEach(count, work, kPointsAtOnce);
-  } else {
-    for (std::size_t p = 0; p < count; ++p) work(p);
-  }
-}
-
 /// All points' costs after a step. A point that the common step has made worse, one far away or nearly on the path,
 /// goes back and settles by itself, lest it hold up all the others.
 double CostAfterStep(const std::vector<BundlePoint>& old_points, const ErrorModel& model,
                      const std::vector<std::size_t>& begin, ThreadPool* pool, std::vector<double>* costs,
                      BundleProblem* problem) {
-  ForEachPoint(costs->size(), pool, [&](std::size_t p) {
+  ForEachIndex(pool, costs->size(), kPointsAtOnce, [&](std::size_t p) {
     if (begin[p] == begin[p + 1]) return;
     double cost = PointCost(*problem, model, begin[p], begin[p + 1]);
     if (cost > (*costs)[p]) {
@@ -221,23 +223,11 @@ std::vector<Eigen::Vector2d> BundleErrors(const BundleProblem& problem) {
 }
 
 std::vector<Eigen::Vector2d> BundleInnovations(const BundleProblem& problem, double drift) {
-  std::vector<Eigen::Vector2d> innovations, all;
-  const auto steps = InnovationSteps(problem, drift);
-  ForEachTrack(problem, [&](std::size_t begin, const std::vector<Eigen::Vector2d>& errors) {
-    Innovate(std::span(steps).subspan(begin, errors.size()), errors, &innovations);
-    all.insert(all.end(), innovations.begin(), innovations.end());
-  });
-  return all;
+  return FilterErrors(problem, drift, Innovate);
 }
 
 std::vector<Eigen::Vector2d> BundleDrifts(const BundleProblem& problem, double drift) {
-  std::vector<Eigen::Vector2d> drifts, all;
-  const auto steps = InnovationSteps(problem, drift);
-  ForEachTrack(problem, [&](std::size_t begin, const std::vector<Eigen::Vector2d>& errors) {
-    EstimateDrift(std::span(steps).subspan(begin, errors.size()), errors, &drifts);
-    all.insert(all.end(), drifts.begin(), drifts.end());
-  });
-  return all;
+  return FilterErrors(problem, drift, EstimateDrift);
 }
 
 std::vector<int> BundleSkyline(const BundleProblem& problem) {
@@ -262,7 +252,8 @@ BundleSummary AdjustBundle(const BundleOptions& options, BundleProblem* problem,
   const auto begin = FirstObservations(*problem);
   const ErrorModel model{InnovationSteps(*problem, options.drift), options.loss_px};
   std::vector<double> costs(problem->points.size());
-  for (std::size_t p = 0; p < costs.size(); ++p) costs[p] = PointCost(*problem, model, begin[p], begin[p + 1]);
+  ForEachIndex(pool, costs.size(), kPointsAtOnce,
+               [&](std::size_t p) { costs[p] = PointCost(*problem, model, begin[p], begin[p + 1]); });
   BundleSummary summary;
   summary.initial_cost = summary.final_cost = std::accumulate(costs.begin(), costs.end(), 0.0);
   BundleEquations equations(*problem, model, begin, pool);

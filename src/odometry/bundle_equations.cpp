@@ -98,15 +98,9 @@ BundleEquations::BundleEquations(const BundleProblem& problem, const ErrorModel&
 void BundleEquations::ForEachPoint(const std::function<void(std::size_t)>& work) {
   const std::size_t count = batches_.size() - 1;
   for (std::size_t first = 0; first < 2; ++first) {
-    const auto batch = [&](std::size_t i) {
+    ForEachIndex(pool_, (count + 1 - first) / 2, 1, [&](std::size_t i) {
       for (std::size_t p = batches_[first + 2 * i]; p < batches_[first + 2 * i + 1]; ++p) work(p);
-    };
-    const std::size_t batches = (count + 1 - first) / 2;
-    if (pool_) {
-      pool_->ForEach(batches, batch);
-    } else {
-      for (std::size_t i = 0; i < batches; ++i) batch(i);
-    }
+    });
   }
 }
 

@@ -18,6 +18,16 @@ inline double CauchyCost(double squared, double width) {
 }
 inline double CauchyWeight(double squared, double width) { return 1.0 / (1.0 + squared / (width * width)); }
 
+/// Calls work(i) for every i in [0, count), on all threads of `pool` if there is one, so many at a time.
+inline void ForEachIndex(ThreadPool* pool, std::size_t count, std::size_t chunk,
+                         const std::function<void(std::size_t)>& work) {
+  if (pool) {
+    pool->ForEach(count, work, chunk);
+  } else {
+    for (std::size_t i = 0; i < count; ++i) work(i);
+  }
+}
+
 /// What errors are thought to be like, and how much a large one counts.
 struct ErrorModel {
   std::vector<InnovationStep> steps;  ///< of all observations

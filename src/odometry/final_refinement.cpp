@@ -9,6 +9,7 @@
 
 #include "evo/odometry/bundle_adjuster.hpp"
 #include "evo/odometry/pose_optimizer.hpp"
+#include "odometry/median.hpp"
 #include "odometry/run_bundle.hpp"
 
 namespace evo {
@@ -23,17 +24,11 @@ constexpr double kSmallestSigmaPx = 0.05;
 constexpr double kUncertain = 3.0;  // times the usual standard deviation
 constexpr double kSmallestInverseDepth = 1e-9;
 
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Standard deviation of a coordinate of the errors, from the median of their norms.
 double MeasureNoise(const std::vector<Eigen::Vector2d>& errors) {
   std::vector<double> norms;
   for (const auto& error : errors) norms.push_back(error.norm());
-  return norms.empty() ? kSmallestSigmaPx : std::max(kSmallestSigmaPx, kMedianToSigma * Median(std::move(norms)));
+  return std::max(kSmallestSigmaPx, kMedianToSigma * Median(std::move(norms)));
 }
 
 /// Leaves out the tracks that mostly contradict the motion: things that move by themselves, and slips.
@@ -142,7 +137,7 @@ class PoseFiller {
   /// From `frame` on in steps of `direction` up to but without `end`, while the poses can be estimated and are not far
   /// more uncertain than usual: the first pose, known by a few tracks just born, would turn the whole path.
   void Extend(int frame, int end, int direction, SE3 start, const Covariance& of_start) {
-    const double usual = turns_.empty() ? 0.0 : Median(turns_);
+    const double usual = Median(turns_);
     for (; frame != end; frame += direction) {
       if (!Estimate(frame, start, of_start)) return;
       if (turns_.back() > kUncertain * usual) {

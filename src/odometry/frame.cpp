@@ -1,6 +1,9 @@
 #include "evo/odometry/frame.hpp"
 
 #include <algorithm>
+#include <utility>
+
+#include "odometry/median.hpp"
 
 namespace evo {
 
@@ -26,16 +29,13 @@ std::vector<FeaturePair> Match(const Frame& first, const Frame& second) {
 }
 
 double MedianDisparity(const std::vector<FeaturePair>& pairs) {
-  if (pairs.empty()) return 0.0;
   std::vector<double> disparities;
   disparities.reserve(pairs.size());
   for (const auto& [first, second] : pairs) {
     const Eigen::Matrix2d px_per_unit = 0.5 * (first->px_per_unit + second->px_per_unit);
     disparities.push_back((px_per_unit * (second->x - first->x)).norm());
   }
-  const auto middle = disparities.begin() + static_cast<std::ptrdiff_t>(disparities.size() / 2);
-  std::nth_element(disparities.begin(), middle, disparities.end());
-  return *middle;
+  return Median(std::move(disparities));
 }
 
 }  // namespace evo

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "odometry/median.hpp"
+
 namespace evo {
 
 namespace {
@@ -28,13 +30,6 @@ constexpr double kMostNodes = 1e5;  // whatever height garbage suggests
 constexpr std::size_t kFewestTracks = 20;
 constexpr double kSmallestShare = 0.5;
 constexpr double kCoveredError = 0.01;
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// The inverse height that most sightings are near to, the certain ones counting more; 0 without any.
 double MostCommon(const std::vector<GroundSighting>& sightings) {

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <optional>
 #include <unordered_map>
+#include <utility>
 
 #include "odometry/driven_path.hpp"
 #include "odometry/ground_profile.hpp"
+#include "odometry/median.hpp"
 #include "odometry/track_points.hpp"
 
 namespace evo {
@@ -46,10 +48,7 @@ double UsualDistance(const std::vector<TrackPoint>& points, const PoseList& pose
   std::vector<double> distances;
   distances.reserve(points.size());
   for (const auto& point : points) distances.push_back((point.position - poses.positions[point.pose]).norm());
-  if (distances.empty()) return 0.0;
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  return *middle;
+  return Median(std::move(distances));
 }
 
 std::vector<GroundSighting> FindBelow(const DrivenPath& path, const std::vector<TrackPoint>& points, double reach) {

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "odometry/median.hpp"
 
 namespace evo {
 
@@ -19,9 +22,7 @@ constexpr double kOutlierSigmas = 4.0;
 
 /// Standard deviation of a coordinate from the median norm of the residuals.
 double RobustScale(std::vector<double> norms) {
-  const auto middle = norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2);
-  std::nth_element(norms.begin(), middle, norms.end());
-  return std::clamp(kMedianToSigma * *middle, kSmallestScalePx, kLargestScalePx);
+  return std::clamp(kMedianToSigma * Median(std::move(norms)), kSmallestScalePx, kLargestScalePx);
 }
 
 double HuberWeight(double error, double width) { return error <= width ? 1.0 : width / error; }

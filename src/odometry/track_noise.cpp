@@ -7,7 +7,18 @@ namespace evo {
 
 namespace {
 
-const Eigen::Vector2d kNone = Eigen::Vector2d::Zero();
+/// Calls f(k, innovation, drift) for each error: how far it is, shrunk, from what was expected, and the drift, shrunk,
+/// that is expected from then on. An infinite error counts as none.
+template <typename Function>
+void Filter(std::span<const InnovationStep> steps, const std::vector<Eigen::Vector2d>& errors, const Function& f) {
+  Eigen::Vector2d expected = Eigen::Vector2d::Zero();
+  for (std::size_t k = 0; k < errors.size(); ++k) {
+    Eigen::Vector2d innovation = -expected;
+    if (errors[k].allFinite()) innovation += steps[k].shrink * errors[k];
+    expected += steps[k].gain * innovation;
+    f(k, innovation, expected);
+  }
+}
 
 }  // namespace
 
@@ -27,24 +38,17 @@ void AppendInnovationSteps(double drift, std::span<const double> magnifications,
 void Innovate(std::span<const InnovationStep> steps, const std::vector<Eigen::Vector2d>& errors,
               std::vector<Eigen::Vector2d>* innovations) {
   innovations->resize(errors.size());
-  Eigen::Vector2d expected = Eigen::Vector2d::Zero();
-  for (std::size_t k = 0; k < errors.size(); ++k) {
-    const bool seen = errors[k].allFinite();
-    const Eigen::Vector2d innovation = (seen ? Eigen::Vector2d(steps[k].shrink * errors[k]) : kNone) - expected;
-    (*innovations)[k] = seen ? Eigen::Vector2d(steps[k].scale * innovation) : errors[k];
-    expected += steps[k].gain * innovation;
-  }
+  Filter(steps, errors, [&](std::size_t k, const Eigen::Vector2d& innovation, const Eigen::Vector2d&) {
+    (*innovations)[k] = errors[k].allFinite() ? Eigen::Vector2d(steps[k].scale * innovation) : errors[k];
+  });
 }
 
 void EstimateDrift(std::span<const InnovationStep> steps, const std::vector<Eigen::Vector2d>& errors,
                    std::vector<Eigen::Vector2d>* drifts) {
   drifts->resize(errors.size());
-  Eigen::Vector2d expected = Eigen::Vector2d::Zero();
-  for (std::size_t k = 0; k < errors.size(); ++k) {
-    const bool seen = errors[k].allFinite();
-    expected += steps[k].gain * ((seen ? Eigen::Vector2d(steps[k].shrink * errors[k]) : kNone) - expected);
-    (*drifts)[k] = expected / steps[k].shrink;
-  }
+  Filter(steps, errors, [&](std::size_t k, const Eigen::Vector2d&, const Eigen::Vector2d& drift) {
+    (*drifts)[k] = drift / steps[k].shrink;
+  });
 }
 
 void InformationOfErrors(std::span<const InnovationStep> steps, const std::vector<double>& weights,

@@ -1,61 +1,17 @@
 // scripts/bench_odometry.sh, on a slider that is fast and short, and what it measures with: configs/paper.yaml.
-#include <map>
-#include <sstream>
-#include <vector>
-
-#include "app/evo_run.hpp"
+#include "app/bench_script.hpp"
 
 namespace evo {
 namespace {
 
 namespace fs = std::filesystem;
 
-class BenchOdometryTest : public EvoRunTest {
+class BenchOdometryTest : public BenchScriptTest {
  protected:
+  BenchOdometryTest() : BenchScriptTest("bench_odometry") {}
+
   void WriteScene(const std::string& name, const std::string& length_m = "0.3") const {
-    Write(name + ".yaml",
-          "scene:\n  kind: slider\n  calibration: davis240c\nmotion:\n  kind: slider\n  slider:\n    duration_s: 0.3\n"
-          "    length_m: " +
-              length_m + "\nsimulation:\n  samples: 1\n  image_hz: 0\n");
-  }
-
-  /// Runs the script in the test's folder and returns its exit code.
-  int Bench(const std::string& words) {
-    const std::string command = "cd " + Quote(folder) + " && EVO_RUN='" EVO_RUN "' bash " +
-                                Quote(fs::path(EVO_SOURCE_DIR) / "scripts" / "bench_odometry.sh") + " " + words +
-                                " >stdout 2>stderr";
-    const int status = std::system(command.c_str());
-    out = ReadFile(folder / "stdout");
-    err = ReadFile(folder / "stderr");
-    return WEXITSTATUS(status);
-  }
-
-  bool Simulated() const { return err.find("simulate   ") != std::string::npos; }
-
-  std::ptrdiff_t CountRuns() const {
-    std::ptrdiff_t count = 0;
-    for (std::size_t at = 0; (at = err.find("run        ", at)) != std::string::npos; ++at) ++count;
-    return count;
-  }
-
-  /// A table in OUT, each row by the names of its columns.
-  std::vector<std::map<std::string, std::string>> Table(const std::string& name) const {
-    std::istringstream csv(ReadFile(folder / "out/bench_odometry" / name));
-    std::vector<std::string> header;
-    std::vector<std::map<std::string, std::string>> rows;
-    for (std::string line; std::getline(csv, line);) {
-      std::istringstream stream(line + ',');
-      std::vector<std::string> cells;
-      for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
-      if (header.empty()) {
-        header = cells;
-        continue;
-      }
-      EXPECT_EQ(cells.size(), header.size()) << line;
-      rows.emplace_back();
-      for (std::size_t i = 0; i < std::min(cells.size(), header.size()); ++i) rows.back()[header[i]] = cells[i];
-    }
-    return rows;
+    BenchScriptTest::WriteScene(name, length_m);
   }
 };
 

@@ -2,28 +2,18 @@
 #include <sstream>
 #include <vector>
 
-#include "app/evo_run.hpp"
+#include "app/bench_script.hpp"
 
 namespace evo {
 namespace {
 
 namespace fs = std::filesystem;
 
-class BenchScenesTest : public EvoRunTest {
+class BenchScenesTest : public BenchScriptTest {
  protected:
-  /// Runs the script in the test's folder and returns its exit code.
-  int Bench(const std::string& words) {
-    const std::string command = "cd " + Quote(folder) + " && EVO_RUN='" EVO_RUN "' bash " +
-                                Quote(fs::path(EVO_SOURCE_DIR) / "scripts" / "bench_scenes.sh") + " " + words +
-                                " >stdout 2>stderr";
-    const int status = std::system(command.c_str());
-    out = ReadFile(folder / "stdout");
-    err = ReadFile(folder / "stderr");
-    return WEXITSTATUS(status);
-  }
+  BenchScenesTest() : BenchScriptTest("bench_scenes") {}
 
-  bool Simulated() const { return err.find("simulate   ") != std::string::npos; }
-  bool Ran() const { return err.find("run        ") != std::string::npos; }
+  bool Ran() const { return CountRuns() > 0; }
 
   /// Cells of the only row of scenes.csv.
   std::vector<std::string> Row() const {
@@ -37,12 +27,7 @@ class BenchScenesTest : public EvoRunTest {
     return cells;
   }
 
-  void WriteScene(const std::string& length_m) const {
-    Write("swift.yaml",
-          "scene:\n  kind: slider\n  calibration: davis240c\nmotion:\n  kind: slider\n  slider:\n    duration_s: 0.5\n"
-          "    length_m: " +
-              length_m + "\nsimulation:\n  samples: 1\n  image_hz: 0\n");
-  }
+  void WriteScene(const std::string& length_m) const { BenchScriptTest::WriteScene("swift", length_m, "0.5"); }
 };
 
 TEST_F(BenchScenesTest, OnlyWhatHasChangedIsDoneAgain) {

@@ -1,62 +1,18 @@
 // scripts/bench_tracking.sh, on a slider that is fast and short.
-#include <map>
-#include <sstream>
-#include <vector>
-
-#include "app/evo_run.hpp"
+#include "app/bench_script.hpp"
 
 namespace evo {
 namespace {
 
 namespace fs = std::filesystem;
 
-class BenchTrackingTest : public EvoRunTest {
+class BenchTrackingTest : public BenchScriptTest {
  protected:
+  BenchTrackingTest() : BenchScriptTest("bench_tracking") {}
+
   void SetUp() override {
-    EvoRunTest::SetUp();
-    Write("swift.yaml",
-          "scene:\n  kind: slider\n  calibration: davis240c\nmotion:\n  kind: slider\n  slider:\n    duration_s: 0.3\n"
-          "    length_m: 0.3\nsimulation:\n  samples: 1\n  image_hz: 0\n");
-  }
-
-  /// Runs the script in the test's folder and returns its exit code.
-  int Bench(const std::string& words) {
-    const std::string command = "cd " + Quote(folder) + " && EVO_RUN='" EVO_RUN "' bash " +
-                                Quote(fs::path(EVO_SOURCE_DIR) / "scripts" / "bench_tracking.sh") + " " + words +
-                                " >stdout 2>stderr";
-    const int status = std::system(command.c_str());
-    out = ReadFile(folder / "stdout");
-    err = ReadFile(folder / "stderr");
-    return WEXITSTATUS(status);
-  }
-
-  bool Says(const std::string& words) const { return err.find(words) != std::string::npos; }
-
-  /// How often the tracker was run and timed.
-  std::ptrdiff_t CountRuns() const {
-    std::ptrdiff_t count = 0;
-    for (std::size_t at = 0; (at = err.find("run        ", at)) != std::string::npos; ++at) ++count;
-    return count;
-  }
-
-  /// A table in OUT, each row by the names of its columns.
-  std::vector<std::map<std::string, std::string>> Table(const std::string& name) const {
-    std::istringstream csv(ReadFile(folder / "out/bench_tracking" / name));
-    std::vector<std::string> header;
-    std::vector<std::map<std::string, std::string>> rows;
-    for (std::string line; std::getline(csv, line);) {
-      std::istringstream stream(line + ',');
-      std::vector<std::string> cells;
-      for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
-      if (header.empty()) {
-        header = cells;
-        continue;
-      }
-      EXPECT_EQ(cells.size(), header.size()) << line;
-      rows.emplace_back();
-      for (std::size_t i = 0; i < std::min(cells.size(), header.size()); ++i) rows.back()[header[i]] = cells[i];
-    }
-    return rows;
+    BenchScriptTest::SetUp();
+    WriteScene("swift", "0.3");
   }
 };
 
@@ -105,7 +61,7 @@ TEST_F(BenchTrackingTest, RowsMediansAndTargets) {
 TEST_F(BenchTrackingTest, OnlyWhatHasChangedIsDoneAgain) {
   const std::string words = "--seeds 1 --methods em --features 20 --repeats 2 swift.yaml";
   ASSERT_EQ(Bench(words), 0) << err;
-  EXPECT_TRUE(Says("simulate   "));
+  EXPECT_TRUE(Simulated());
   EXPECT_EQ(CountRuns(), 2) << err;
   const std::string before = out;
   ASSERT_EQ(Bench(words), 0) << err;
@@ -120,7 +76,7 @@ TEST_F(BenchTrackingTest, OnlyWhatHasChangedIsDoneAgain) {
   ASSERT_EQ(Bench(words + " --features 20,30"), 0) << err;
   EXPECT_EQ(CountRuns(), 2) << "only those with 30";
   ASSERT_EQ(Bench(words + " --set tracker.patch_radius_px=9"), 0) << err;
-  EXPECT_FALSE(Says("simulate   "));
+  EXPECT_FALSE(Simulated());
   EXPECT_EQ(CountRuns(), 2) << err;
 }
 
@@ -134,7 +90,7 @@ TEST_F(BenchTrackingTest, RecordingsWithAndWithoutGroundTruth) {
       << err;
   fs::remove(folder / "flat/depth_gt.hdf5");
   ASSERT_EQ(Bench("--recording blind:0.2+0.3 --recording flat --methods em --features 20 --repeats 1"), 0) << err;
-  EXPECT_FALSE(Says("simulate   ")) << "no scenes beside";
+  EXPECT_FALSE(Simulated()) << "no scenes beside";
   const auto rows = Table("tracking.csv");
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_EQ(rows[0].at("scene"), "blind:0.2+0.3");

@@ -29,9 +29,9 @@ struct GroundScale {
 /// the slow drift of the scale along the path out. The height is measured at each track's place along the path, where
 /// the camera came past the track: from the path, not from the camera where it saw the track, so that neither hills nor
 /// the camera's pitch enter. Needs a camera that is upright (rolled by less than about 20 degrees) and driven parallel
-/// to the ground. Where there is no ground, the
-/// scale of the nearest holds; if there is none at all, everything stays as it is, with a warning. Rotations stay in
-/// any case. `frames` are all frames of the run; `segments` its parts in order of time.
+/// to the ground. Where there is no ground, the scale of the nearest holds; if there is none at all, everything stays
+/// as it is, with a warning. Rotations stay in any case. `frames` are all frames of the run; `segments` its parts in
+/// order of time.
 GroundScale ScaleByGround(const GroundOptions& options, const std::vector<Frame>& frames,
                           std::vector<Segment>* segments);
 
