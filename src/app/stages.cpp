@@ -56,9 +56,10 @@ void DrawTrackFigures(const std::filesystem::path& folder, const TrackingOutcome
 }
 
 std::string FormatGroundScale(const GroundScale& scale) {
-  if (!scale.found) return "scale      arbitrary: no ground found\n";
-  return Format("scale      metres, from %zu tracks on the ground along %.0f %% of the path, uncertain by %.2f %%\n",
-                scale.tracks, 100.0 * scale.covered, 100.0 * scale.error);
+  if (!scale.found) return "scale      arbitrary: no ground found that would hold it\n";
+  return Format("scale      %s, by %zu tracks on the ground along %.0f %% of the path, uncertain by %.2f %%\n",
+                scale.metric ? "metres" : "arbitrary but held", scale.tracks, 100.0 * scale.covered,
+                100.0 * scale.error);
 }
 
 }  // namespace
@@ -173,7 +174,7 @@ OdometryResult RunOdometryStage(StageContext* context, const Tracks& tracks, con
   context->record.AddCount("poses", result.trajectory.size());
   context->record.AddCount("frames_lost", result.lost.size());
   context->record.AddCount("map_points", result.points.size());
-  context->record.manifest.scale = result.ground && result.ground->found ? "ground" : "arbitrary";
+  context->record.manifest.scale = result.ground && result.ground->metric ? "ground" : "arbitrary";
   if (result.ground) context->record.AddCount("ground_tracks", result.ground->tracks);
   return result;
 }

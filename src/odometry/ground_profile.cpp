@@ -28,7 +28,9 @@ constexpr double kMostNoise = 2.0;
 constexpr std::array kGates = {0.3, 0.2, 0.15, 0.1, 0.07, 0.05, 0.03, 0.0, 0.0, 0.0};
 constexpr double kMostNodes = 1e5;  // whatever height garbage suggests
 constexpr std::size_t kFewestTracks = 20;
+constexpr double kStretch = 10.0;  // heights of way, on which most sightings have to agree
 constexpr double kSmallestShare = 0.5;
+constexpr double kSmallestAgreement = 0.9;  // share of the stretches
 constexpr double kCoveredError = 0.01;
 
 /// The inverse height that most sightings are near to, the certain ones counting more; 0 without any.
@@ -136,9 +138,7 @@ class ProfileFitter {
     }
     spdlog::debug("odometry: {} of {} tracks below the path lie on the ground, noise {:.2f}, roll {:.4f}",
                   profile_.tracks, sightings_.size(), noise_, profile_.roll);
-    if (static_cast<double>(profile_.tracks) < kSmallestShare * static_cast<double>(sightings_.size())) {
-      return std::nullopt;
-    }
+    if (noise_ >= kMostNoise || Agreement() < kSmallestAgreement) return std::nullopt;
     Summarize();
     return profile_;
   }
@@ -212,7 +212,26 @@ class ProfileFitter {
     return true;
   }
 
+  /// The share of the stretches in which most sightings agree with the profile, by their number of sightings.
+  double Agreement() const {
+    const auto stretch = static_cast<std::size_t>(kStretch);
+    std::vector<std::size_t> all(profile_.inverse_height.size() / stretch + 1);
+    std::vector<std::size_t> agreeing(all.size());
+    for (const auto& s : sightings_) {
+      const auto [error, sigma] = Compare(s);
+      const std::size_t k = Locate(profile_, s.along).node / stretch;
+      ++all[k];
+      if (std::abs(error) < kTukey * sigma) ++agreeing[k];
+    }
+    std::size_t in_agreement = 0;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      if (static_cast<double>(agreeing[k]) >= kSmallestShare * static_cast<double>(all[k])) in_agreement += all[k];
+    }
+    return static_cast<double>(in_agreement) / static_cast<double>(sightings_.size());
+  }
+
   void Summarize() {
+    profile_.heights = options_.length / profile_.spacing;
     std::vector<double> errors;
     for (std::size_t k = 0; k < variances_.size(); ++k) {
       errors.push_back(std::sqrt(variances_[k]) / profile_.inverse_height[k]);

@@ -30,13 +30,15 @@ struct GroundProfile {
   std::size_t tracks = 0;              ///< that lie on the ground
   double covered = 0.0;                ///< share of the path where the height is known within a percent
   double error = 0.0;                  ///< relative standard deviation of the height, median over the path
+  double heights = 0.0;                ///< length of the path in heights
 
   double InverseHeight(double along) const;
 };
 
 /// The profile that the most sightings agree with, smoothed as the drift allows: a random walk of the height along the
-/// path, by least squares with Tukey's weights, from coarse to fine. Empty if fewer than half of the sightings agree
-/// within what their noise explains, or too few in all: then there is no ground.
+/// path, by least squares with Tukey's weights, from coarse to fine. Empty if there are too few sightings, if they
+/// scatter far more than their noise explains, or if on more than a tenth of the path fewer than half of them agree:
+/// then there is no ground, or the height is not constant.
 std::optional<GroundProfile> FitGround(const GroundProfileOptions& options,
                                        const std::vector<GroundSighting>& sightings);
 

@@ -23,6 +23,7 @@ constexpr double kReach = 40.0;       // heights between the camera that saw a t
 // Sideways over below, of tracks that may lie on the ground. Farther to the side there are kerbs and parked cars, and
 // near the image's border the tracks of a road drift outwards.
 constexpr double kCone = 0.8;
+constexpr double kShortestDrive = 10.0;  // heights, from where on a height that is not known is taken for constant
 
 /// All poses of a run in order of time.
 struct PoseList {
@@ -143,8 +144,11 @@ void Rescale(const std::vector<double>& scales, const std::vector<Frame>& frames
 }  // namespace
 
 void Register(Parameters& parameters, GroundOptions& options) {
-  parameters.Add("odometry.ground.camera_height_m", &options.camera_height_m, 0, 100,
-                 "height of the camera above the road (m), from which the scale is taken; 0: the scale is arbitrary");
+  parameters.Add("odometry.ground.hold_height", &options.hold_height,
+                 "hold the height of the camera above the road, where it drives over one: no drift of the scale");
+  parameters.Add(
+      "odometry.ground.camera_height_m", &options.camera_height_m, 0, 100,
+      "height of the camera above the road (m), held and the scale taken from it; 0: the scale is arbitrary");
   parameters.Add("odometry.ground.drift", &options.drift, 1e-6, 1,
                  "relative change of the scale over a way of one camera height");
 }
@@ -152,20 +156,23 @@ void Register(Parameters& parameters, GroundOptions& options) {
 GroundScale ScaleByGround(const GroundOptions& options, const std::vector<Frame>& frames,
                           std::vector<Segment>* segments) {
   const auto heights = MeasureHeights(options, TriangulateTracks(frames, *segments), ListPoses(*segments));
-  if (!heights) {
-    spdlog::warn("odometry: no ground found below the path: the scale stays arbitrary");
+  const bool known = options.camera_height_m > 0.0;
+  if (!heights || (!known && heights->profile.heights < kShortestDrive)) {
+    spdlog::log(known ? spdlog::level::warn : spdlog::level::info,
+                "odometry: no ground found below the path: the scale stays arbitrary and may drift");
     return {};
   }
+  const double height = known ? options.camera_height_m : 1.0 / Median(heights->inverse);
   std::vector<double> scales;
-  for (const double inverse : heights->inverse) scales.push_back(options.camera_height_m * inverse);
+  for (const double inverse : heights->inverse) scales.push_back(height * inverse);
   Rescale(scales, frames, segments);
   const GroundProfile& profile = heights->profile;
   const auto [lowest, highest] = std::ranges::minmax(scales);
-  const GroundScale scale{true, profile.tracks, profile.covered, profile.error, lowest, highest};
+  const GroundScale scale{true, known, profile.tracks, profile.covered, profile.error, lowest, highest};
   spdlog::info(
-      "odometry: scale from the ground: {:.4g} to {:.4g} m a unit along the path, {} tracks, {:.0f} % of the path "
+      "odometry: scale from the ground: {:.4g} to {:.4g} {} a unit along the path, {} tracks, {:.0f} % of the path "
       "covered, uncertain by {:.2f} %",
-      scale.lowest, scale.highest, scale.tracks, 100.0 * scale.covered, 100.0 * scale.error);
+      scale.lowest, scale.highest, known ? "m" : "new units", scale.tracks, 100.0 * scale.covered, 100.0 * scale.error);
   return scale;
 }
 

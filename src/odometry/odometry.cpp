@@ -105,7 +105,8 @@ OdometryResult RunOdometry(const Tracks& tracks, const Camera& camera, const Odo
         options.final_refinement, frames,
         [&](double share) { progress(kTrackingShare + (1.0 - kTrackingShare) * share); }, &pool, &segments);
   }
-  if (options.ground.camera_height_m > 0.0) result.ground = ScaleByGround(options.ground, frames, &segments);
+  const bool grounded = options.ground.hold_height || options.ground.camera_height_m > 0.0;
+  if (grounded) result.ground = ScaleByGround(options.ground, frames, &segments);
   for (const Segment& segment : segments) {
     for (std::size_t i = 0; i < segment.frames.size(); ++i) {
       result.trajectory.push_back({frames[segment.frames[i]].t, segment.T_cam_world[i].Inverse()});

@@ -30,6 +30,8 @@ struct StreetOptions {
   double bare_from_m = 1e9;  ///< from here
   double bare_to_m = 0.0;    ///< to here the road has no texture
   bool road = true;          ///< else nothing but walls
+  double heave = 0.0;        ///< of the camera's height, relative, to and fro within 10 m: carried, not driven
+  double climb = 0.0;        ///< the same, within the second half of the way: an aircraft
   double lost_at_m = 1e9;    ///< the tracking starts anew, with another scale
   unsigned seed = 1;
 };
@@ -68,6 +70,11 @@ class StreetMaker {
 
   double RoadHeight(double z) const { return options_.hills / 0.05 * (1.0 - std::cos(0.05 * z)); }  // downwards
 
+  double CameraHeight(double z) const {
+    const double half = 0.5 * options_.frames * kStep;
+    return kHeight * (1.0 + options_.heave * std::sin(0.6 * z) + options_.climb * std::max(0.0, z / half - 1.0));
+  }
+
   /// T_world_cam: parallel to the road, then the camera on the car.
   SE3 Pose(int frame) const {
     const double z = frame * kStep;
@@ -76,7 +83,7 @@ class StreetMaker {
     const double heading = std::atan(options_.bend / 0.04 * std::sin(0.04 * z));
     const Eigen::Quaterniond car = so3::Exp({0, heading, 0}) * so3::Exp({-std::atan(slope), 0, 0});
     const Eigen::Quaterniond camera = so3::Exp({-options_.pitch, 0, 0}) * so3::Exp({0, 0, options_.roll});
-    return {car * camera, Eigen::Vector3d(x, RoadHeight(z), z) + car * Eigen::Vector3d(0, -kHeight, 0)};
+    return {car * camera, Eigen::Vector3d(x, RoadHeight(z), z) + car * Eigen::Vector3d(0, -CameraHeight(z), 0)};
   }
 
   /// Where a ray from the camera meets the road or a wall, up to 40 m away.
@@ -249,6 +256,12 @@ TEST(GroundScale, HillsAndBends) {
   ExpectMetric(street, 0.015);
 }
 
+TEST(GroundScale, ACarMayRockOnItsSprings) {
+  Street street = StreetMaker({.heave = 0.015}).Make();
+  EXPECT_TRUE(Scale(&street).found);
+  ExpectMetric(street, 0.015);
+}
+
 TEST(GroundScale, HoldsTheScaleWhereTheRoadIsBare) {
   Street street = StreetMaker({.bare_from_m = 60, .bare_to_m = 90}).Make();
   const GroundScale scale = Scale(&street);
@@ -266,16 +279,45 @@ TEST(GroundScale, EachSegmentHasAScaleOfItsOwn) {
   EXPECT_NEAR(ScaleError(street, 620, 999), 0.0, 0.01);
 }
 
-TEST(GroundScale, WithoutGroundNothingChanges) {
-  Street street = StreetMaker({.road = false}).Make();
+TEST(GroundScale, HoldsAHeightThatIsNotKnown) {
+  for (const bool lost : {false, true}) {
+    Street street = StreetMaker({.lost_at_m = lost ? 90 : 1e9}).Make();
+    const GroundScale scale = ScaleByGround({}, street.frames, &street.segments);
+    EXPECT_TRUE(scale.found);
+    EXPECT_FALSE(scale.metric);
+    const double unit = 1.0 + ScaleError(street, 0, 999);
+    EXPECT_NEAR(unit, 1.0 / (lost ? 2.3 : 2.0), lost ? 0.1 : 0.02);
+    for (std::size_t i = 0; i + 200 <= 999; i += 100) {
+      EXPECT_NEAR((1.0 + ScaleError(street, i, i + 200)) / unit, 1.0, 0.01) << i;
+    }
+  }
+}
+
+void ExpectUntouched(const GroundOptions& options, Street street) {
   const Street before = street;
-  EXPECT_FALSE(Scale(&street).found);
+  EXPECT_FALSE(ScaleByGround(options, street.frames, &street.segments).found);
   for (std::size_t i = 0; i < street.frames.size(); ++i) {
     EXPECT_EQ(street.segments[0].T_cam_world[i].Matrix(), before.segments[0].T_cam_world[i].Matrix());
   }
   for (std::size_t i = 0; i < street.segments[0].points.size(); ++i) {
     EXPECT_EQ(street.segments[0].points[i].position, before.segments[0].points[i].position);
   }
+}
+
+TEST(GroundScale, WithoutGroundNothingChanges) {
+  ExpectUntouched({}, StreetMaker({.road = false}).Make());
+  ExpectUntouched({.camera_height_m = kHeight}, StreetMaker({.road = false}).Make());
+}
+
+TEST(GroundScale, ACameraThatDoesNotKeepItsHeightIsLeftAlone) {
+  for (const double height_m : {0.0, kHeight}) {
+    ExpectUntouched({.camera_height_m = height_m}, StreetMaker({.heave = 0.15}).Make());
+    ExpectUntouched({.camera_height_m = height_m}, StreetMaker({.climb = 1.0}).Make());
+  }
+}
+
+TEST(GroundScale, AShortWayTellsNothingOfAHeightThatIsNotKnown) {
+  ExpectUntouched({}, StreetMaker({.frames = 80}).Make());
 }
 
 TEST(GroundScale, NothingToGoBy) {
@@ -290,10 +332,11 @@ TEST(GroundScale, MakesADriveMetric) {
   const auto drive = testing::MakeDrive({.features = 200, .seed = 3});
   OdometryOptions options;
   const auto run = [&] { return RunOdometry(drive.tracks, testing::DriveCamera(), options, 2, [](double) {}); };
+  options.ground.hold_height = false;
   EXPECT_FALSE(run().ground.has_value());
   options.ground.camera_height_m = kHeight;
   const OdometryResult result = run();
-  ASSERT_TRUE(result.ground && result.ground->found);
+  ASSERT_TRUE(result.ground && result.ground->found && result.ground->metric);
   std::map<TimeNs, Eigen::Vector3d> truth;
   for (const auto& pose : drive.truth) truth[pose.t] = pose.T_world_cam.translation();
   const auto& first = result.trajectory.front();

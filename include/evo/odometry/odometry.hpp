@@ -37,7 +37,7 @@ struct OdometryResult {
   int frames = 0;             ///< with and without a pose
   int key_frames = 0;
   std::vector<TimeNs> bootstraps;     ///< first frame of every segment of the map; more than one: the scale was lost
-  std::optional<GroundScale> ground;  ///< if the camera's height was given
+  std::optional<GroundScale> ground;  ///< if the height above it was to be held
   std::vector<TimeNs> lost;           ///< frames between the first and the last pose that have none
 };
 
