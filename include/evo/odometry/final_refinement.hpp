@@ -17,7 +17,7 @@ struct FinalRefinementOptions {
   /// InnovationStep.
   double drift = 0.07;
   int rounds = 3;       ///< of adjustment, the noise measured anew before each
-  int iterations = 10;  ///< of each round
+  int iterations = 5;  ///< of each round
   double budget = 4e6;  ///< 6x6 block products an iteration may cost; beyond it frames are thinned out
 };
 void Register(Parameters& parameters, FinalRefinementOptions& options);
