@@ -25,10 +25,9 @@ class BenchScriptTest : public EvoRunTest {
 
   /// Runs the script in the test's folder and returns its exit code.
   int Bench(const std::string& words) {
-    const std::string command =
-        "cd " + Quote(folder) + " && EVO_RUN='" EVO_RUN "' bash " +
-        Quote(std::filesystem::path(EVO_SOURCE_DIR) / "scripts" / (script_ + ".sh")) + " " + words +
-        " >stdout 2>stderr";
+    const std::string command = "cd " + Quote(folder) + " && EVO_RUN='" EVO_RUN "' bash " +
+                                Quote(std::filesystem::path(EVO_SOURCE_DIR) / "scripts" / (script_ + ".sh")) + " " +
+                                words + " >stdout 2>stderr";
     const int status = std::system(command.c_str());
     out = ReadFile(folder / "stdout");
     err = ReadFile(folder / "stderr");
