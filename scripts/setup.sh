@@ -9,6 +9,7 @@ packages=(
   libeigen3-dev libopencv-core-dev libopencv-imgproc-dev libopencv-video-dev libyaml-cpp-dev libcli11-dev
   libhdf5-dev libdeflate-dev libssl-dev libpng-dev libspdlog-dev nlohmann-json3-dev
   libgtest-dev     # the tests
+  libceres-dev     # the tests: a second bundle adjustment
   libbenchmark-dev # the micro-benchmarks
   gnuplot-nox      # the plots, at run time
   make             # scripts/sweep.mk

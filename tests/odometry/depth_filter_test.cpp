@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <vector>
 
 namespace evo {
 namespace {
@@ -29,28 +31,92 @@ TEST(DepthFilter, UncertaintyIsTheChangeOfDepthByOneAngle) {
   EXPECT_NEAR(DepthUncertainty(ray, t, z, angle), std::abs(other - z), 1e-3 * std::abs(other - z));
 }
 
-TEST(DepthFilter, MomentsAreThoseOfThePosterior) {
-  Seed seed{.a = 12, .b = 7, .mu = 0.12, .z_range = 0.4, .sigma2 = 0.02 * 0.02};
-  const double x = 0.15, tau = 0.03;
-  const Seed before = seed;
-  UpdateSeed(x, tau, &seed);
-  // The same by brute force: posterior ~ (p N(x; z, tau^2) + (1 - p) / range) N(z; mu, sigma^2) Beta(p; a, b).
-  double sum = 0, mean = 0, square = 0, share = 0;
-  for (double z = 0.0; z < 0.3; z += 5e-4) {
-    const double prior = std::exp(-0.5 * std::pow((z - before.mu), 2) / before.sigma2);
-    const double good = std::exp(-0.5 * std::pow((x - z) / tau, 2)) / (tau * std::sqrt(2 * M_PI));
-    for (double p = 0.0025; p < 1.0; p += 0.005) {
-      const double beta = std::pow(p, before.a - 1) * std::pow(1 - p, before.b - 1);
-      const double w = (p * good + (1 - p) / before.z_range) * prior * beta;
+struct Measurement {
+  double x;    // inverse distance
+  double tau;  // its standard deviation
+};
+
+struct Belief {
+  double mean, sigma;  // of the inverse distance
+  double ratio, ratio_sigma;
+};
+
+Belief Approximate(const Seed& seed) {
+  const double ratio = seed.inlier_ratio();
+  return {seed.mu, std::sqrt(seed.sigma2), ratio, std::sqrt(ratio * (1.0 - ratio) / (seed.a + seed.b + 1.0))};
+}
+
+/// What is to be believed after the measurements, on a grid over inverse distance z and ratio p: proportional to
+/// N(z; mu, sigma^2) Beta(p; a, b) times (p N(x; z, tau^2) + (1 - p) / z_range) for each of them.
+Belief Exact(const Seed& prior, const std::vector<Measurement>& measurements) {
+  constexpr int kDistances = 1000, kRatios = 40;
+  double sum = 0, z_sum = 0, zz_sum = 0, p_sum = 0, pp_sum = 0;
+  std::vector<double> densities(measurements.size());
+  for (int i = 0; i < kDistances; ++i) {
+    const double sigmas = -6.0 + 12.0 * i / kDistances;
+    const double z = prior.mu + sigmas * std::sqrt(prior.sigma2);
+    for (std::size_t k = 0; k < measurements.size(); ++k) {
+      const auto& [x, tau] = measurements[k];
+      densities[k] = std::exp(-0.5 * std::pow((x - z) / tau, 2)) / (tau * std::sqrt(2 * M_PI));
+    }
+    for (int j = 0; j < kRatios; ++j) {
+      const double p = (j + 0.5) / kRatios;
+      double w = std::exp(-0.5 * sigmas * sigmas) * std::pow(p, prior.a - 1) * std::pow(1 - p, prior.b - 1);
+      for (const double density : densities) w *= p * density + (1 - p) / prior.z_range;
       sum += w;
-      mean += w * z;
-      square += w * z * z;
-      share += w * p;
+      z_sum += w * z;
+      zz_sum += w * z * z;
+      p_sum += w * p;
+      pp_sum += w * p * p;
     }
   }
-  EXPECT_NEAR(seed.mu, mean / sum, 1e-5);
-  EXPECT_NEAR(seed.sigma2, square / sum - std::pow(mean / sum, 2), 1e-6);
-  EXPECT_NEAR(seed.inlier_ratio(), share / sum, 1e-4);
+  const double mean = z_sum / sum, ratio = p_sum / sum;
+  return {mean, std::sqrt(zz_sum / sum - mean * mean), ratio, std::sqrt(pp_sum / sum - ratio * ratio)};
+}
+
+TEST(DepthFilter, OneMeasurementGivesTheMomentsOfThePosterior) {
+  const Seed prior{.a = 12, .b = 7, .mu = 0.12, .z_range = 0.4, .sigma2 = 0.02 * 0.02};
+  for (const double x : {0.12, 0.15, 0.19, 0.35}) {
+    for (const double tau : {0.005, 0.03, 0.2}) {
+      Seed seed = prior;
+      UpdateSeed(x, tau, &seed);
+      const Belief ours = Approximate(seed), exact = Exact(prior, {{x, tau}});
+      EXPECT_NEAR(ours.mean, exact.mean, 1e-8) << x << " " << tau;
+      EXPECT_NEAR(ours.sigma, exact.sigma, 1e-8) << x << " " << tau;
+      EXPECT_NEAR(ours.ratio, exact.ratio, 1e-8) << x << " " << tau;
+      EXPECT_NEAR(ours.ratio_sigma, exact.ratio_sigma, 1e-8) << x << " " << tau;
+    }
+  }
+}
+
+TEST(DepthFilter, ManyMeasurementsStayNearThePosterior) {
+  constexpr int kSeeds = 40;
+  const Seed prior{.mu = 0.125, .z_range = 0.5, .sigma2 = 0.5 * 0.5 / 36.0};
+  for (const double inlier_ratio : {1.0, 0.9, 0.75, 0.6}) {
+    int near = 0;
+    double bias = 0.0;
+    for (std::uint32_t random_seed = 1; random_seed <= kSeeds; ++random_seed) {
+      std::mt19937 random(random_seed);
+      std::normal_distribution<double> normal;
+      std::uniform_real_distribution<double> uniform(0.0, 1.0);
+      const double truth = std::clamp(prior.mu + std::sqrt(prior.sigma2) * normal(random), 0.02, prior.z_range);
+      std::vector<Measurement> measurements;
+      Seed seed = prior;
+      for (int i = 1; i <= 30; ++i) {
+        const double tau = 0.06 / i + 0.003;  // the baseline grows
+        const bool good = uniform(random) < inlier_ratio;
+        measurements.push_back({good ? truth + tau * normal(random) : prior.z_range * uniform(random), tau});
+        UpdateSeed(measurements.back().x, tau, &seed);
+      }
+      const Belief ours = Approximate(seed), exact = Exact(prior, measurements);
+      const double off = (ours.mean - exact.mean) / exact.sigma, wider = ours.sigma / exact.sigma;
+      bias += off / kSeeds;
+      near += std::abs(off) < 0.3 && std::abs(wider - 1.0) < 0.15 && std::abs(ours.ratio - exact.ratio) < 0.05 ? 1 : 0;
+    }
+    // A few seeds with many outliers believe in a chance cluster of them for a while.
+    EXPECT_GE(near, inlier_ratio > 0.7 ? kSeeds - 2 : kSeeds - 10) << inlier_ratio;
+    EXPECT_NEAR(bias, 0.0, 0.1) << inlier_ratio;
+  }
 }
 
 TEST(DepthFilter, ConvergesToTheTrueDepthAndReportsItOnce) {

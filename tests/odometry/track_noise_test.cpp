@@ -5,24 +5,10 @@
 #include <Eigen/LU>
 #include <random>
 
+#include "odometry/track_covariance.hpp"
+
 namespace evo {
 namespace {
-
-/// What errors with that drift and unit noise vary and covary like, one coordinate.
-Eigen::MatrixXd Covariance(double drift, const std::vector<double>& magnifications) {
-  const auto n = static_cast<Eigen::Index>(magnifications.size());
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Identity(n, n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    for (Eigen::Index j = 0; j < n; ++j) {
-      for (Eigen::Index k = 0; k < std::min(i, j); ++k) {
-        const double step = 1.0 / magnifications[static_cast<std::size_t>(k)];
-        covariance(i, j) += drift * step * step * magnifications[static_cast<std::size_t>(i)] *
-                            magnifications[static_cast<std::size_t>(j)];
-      }
-    }
-  }
-  return covariance;
-}
 
 std::vector<double> Growing(int sightings, double growth) {
   std::vector<double> magnifications;
@@ -40,7 +26,7 @@ TEST(TrackNoise, InformationIsTheInverseCovariance) {
       InformationOfErrors(steps, std::vector<double>(25, 1.0), &information);
       // In units of the variance that an innovation has in the long run: that of the noise and of the settled drift.
       const double settled = 0.5 * (drift + std::sqrt(drift * drift + 4.0 * drift));
-      const Eigen::MatrixXd expected = (1.0 + settled) * Covariance(drift, magnifications).inverse();
+      const Eigen::MatrixXd expected = (1.0 + settled) * testing::TrackCovariance(drift, magnifications).inverse();
       EXPECT_LT((information - expected).cwiseAbs().maxCoeff(), 1e-9) << drift << " " << growth;
     }
   }

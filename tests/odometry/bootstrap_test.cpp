@@ -1,0 +1,132 @@
+#include "evo/odometry/bootstrap.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace evo {
+namespace {
+
+constexpr double kFocal = 226.0;
+constexpr double kNoisePx = 0.2;
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+struct Scene {
+  int points = 100;
+  double outlier_share = 0.0;                      // of tracks that move by themselves
+  Eigen::Vector3d step = Eigen::Vector3d::Zero();  // of the camera from frame to frame
+  Eigen::Vector3d turn = Eigen::Vector3d::Zero();  // likewise, rad
+};
+
+struct Recording {
+  std::vector<Frame> frames;   // with their true poses
+  std::vector<bool> outliers;  // of the tracks
+};
+
+/// Points 4 to 20 away, seen by a camera without distortion as long as they are in the image.
+Recording Record(const Scene& scene, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> x(-170.0, 170.0), y(-125.0, 125.0), depth(4.0, 20.0), stray(-2.0, 2.0);
+  std::normal_distribution<double> noise(0.0, kNoisePx);
+  std::vector<Eigen::Vector3d> points;
+  std::vector<Eigen::Vector2d> strays;  // px a frame
+  Recording recording;
+  for (int p = 0; p < scene.points; ++p) {
+    points.emplace_back(depth(random) * Eigen::Vector3d(x(random) / kFocal, y(random) / kFocal, 1.0));
+    recording.outliers.push_back(p < scene.outlier_share * scene.points);
+    strays.emplace_back(Eigen::Vector2d::Zero());
+    if (recording.outliers.back()) strays.back() = {stray(random), stray(random)};
+  }
+  for (int i = 0; i < 40; ++i) {
+    Frame frame{FromSeconds(0.02) * i, SE3(so3::Exp(i * scene.turn), i * scene.step).Inverse(), {}};
+    for (int p = 0; p < scene.points; ++p) {
+      const Eigen::Vector3d q = frame.T_cam_world * points[p];
+      const Eigen::Vector2d px =
+          kFocal * q.head<2>() / q.z() + i * strays[p] + Eigen::Vector2d(noise(random), noise(random));
+      if (q.z() < 1.0 || std::abs(px.x()) > 172.0 || std::abs(px.y()) > 129.0) continue;
+      frame.features.push_back({p, px / kFocal, kFocal * Eigen::Matrix2d::Identity()});
+    }
+    recording.frames.push_back(frame);
+  }
+  return recording;
+}
+
+/// The first map, or why there is none.
+std::optional<Bootstrap> FirstMap(const Recording& recording, std::string* obstacle = nullptr) {
+  Bootstrapper bootstrapper({}, recording.frames, kFocal);
+  for (int i = 0; i < static_cast<int>(recording.frames.size()); ++i) {
+    if (auto bootstrap = bootstrapper.Add(i)) return bootstrap;
+  }
+  if (obstacle) *obstacle = bootstrapper.obstacle();
+  return std::nullopt;
+}
+
+enum class Way { kForward, kSideways, kOblique };
+
+Scene RandomScene(Way way, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> share(0.0, 1.0), both(-1.0, 1.0);
+  const double angle = std::numbers::pi * both(random);
+  const Eigen::Vector3d sideways(std::cos(angle), std::sin(angle), 0.0);
+  const double forward = both(random);
+  Scene scene{.points = 60 + static_cast<int>(91 * share(random)), .outlier_share = 0.2 + 0.1 * share(random)};
+  scene.turn = 0.002 * Eigen::Vector3d(both(random), both(random), both(random));
+  scene.step = 0.05 * sideways;
+  if (way == Way::kForward) scene.step = Eigen::Vector3d(0.0, 0.0, 0.15);
+  if (way == Way::kOblique) scene.step.z() = 0.1 * forward;
+  return scene;
+}
+
+TEST(BootstrapGeometry, MotionIsRightAndOutliersAreLeftOut) {
+  for (const Way way : {Way::kForward, Way::kSideways, Way::kOblique}) {
+    double outliers = 0.0, kept_outliers = 0.0;
+    for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+      const Recording recording = Record(RandomScene(way, seed), seed);
+      const auto bootstrap = FirstMap(recording);
+      ASSERT_TRUE(bootstrap) << seed;
+      const Frame& first = recording.frames[bootstrap->first];
+      const Frame& last = recording.frames[bootstrap->last];
+      const SE3 truth = last.T_cam_world * first.T_cam_world.Inverse();
+      const SE3& found = bootstrap->T_cam_world.back();
+      const double cosine = found.translation().normalized().dot(truth.translation().normalized());
+      // Medians are 0.05 and 0.5 degrees.
+      EXPECT_LT(so3::Log(found.rotation() * truth.rotation().conjugate()).norm(), 0.3 * kDegree) << seed;
+      EXPECT_GT(cosine, std::cos(4.0 * kDegree)) << seed;
+      const auto is_outlier = [&](std::int64_t track) { return recording.outliers[track]; };
+      const auto pairs = Match(first, last);
+      const auto all_bad = std::ranges::count_if(pairs, [&](auto& pair) { return is_outlier(pair.first->track); });
+      const auto bad = std::ranges::count_if(bootstrap->points, is_outlier, &Point::track);
+      const auto good = static_cast<double>(bootstrap->points.size()) - bad;
+      EXPECT_GE(good, 0.95 * (static_cast<double>(pairs.size()) - all_bad)) << seed;
+      outliers += all_bad;
+      kept_outliers += bad;
+    }
+    // Some happen to follow their epipolar lines.
+    EXPECT_LT(kept_outliers, 0.3 * outliers) << static_cast<int>(way);
+  }
+}
+
+TEST(BootstrapGeometry, ACameraThatStandsIsRefused) {
+  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+    std::string obstacle;
+    EXPECT_FALSE(FirstMap(Record({.outlier_share = 0.3}, seed), &obstacle)) << seed;
+    EXPECT_NE(obstacle.find("too little motion"), std::string::npos) << obstacle;
+  }
+}
+
+TEST(BootstrapGeometry, TracksThatAllMoveByThemselvesAreRefused) {
+  for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+    std::string obstacle;
+    EXPECT_FALSE(FirstMap(Record({.points = 60, .outlier_share = 1.0}, seed), &obstacle)) << seed;
+    EXPECT_NE(obstacle.find("no rigid motion"), std::string::npos) << obstacle;
+  }
+}
+
+}  // namespace
+}  // namespace evo

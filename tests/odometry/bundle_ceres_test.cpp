@@ -1,0 +1,193 @@
+#include <ceres/ceres.h>
+#include <ceres/rotation.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "evo/odometry/bundle_adjuster.hpp"
+#include "odometry/track_covariance.hpp"
+
+namespace evo {
+namespace {
+
+constexpr int kFrames = 6;
+constexpr double kLossPx = 1.0;
+constexpr double kScalePrior = 1e3;  // any: it holds what the sightings leave free
+
+/// Sightings with noise and some outliers by a camera that drives forward, and a start that is off the truth.
+BundleProblem DisturbedDrive(std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> side(-0.6, 0.6), depth(4.0, 20.0), share(0.0, 1.0), far(-15.0, 15.0);
+  std::normal_distribution<double> normal;
+  BundleProblem problem;
+  for (int i = 0; i < kFrames; ++i) {
+    problem.T_cam_world.emplace_back(so3::Exp({0.01 * i, -0.02 * i, 0.005 * i}),
+                                     Eigen::Vector3d(0.05 * i, 0.0, -0.5 * i));
+  }
+  for (int p = 0; p < 40; ++p) {
+    problem.points.push_back({p % 3, {side(random), side(random), 1.0 / depth(random)}});
+    for (int i = p % 3; i < kFrames; ++i) {
+      const Eigen::Vector3d q = problem.T_cam_world[i] * WorldPosition(problem, problem.points.back());
+      Eigen::Vector2d error_px(0.4 * normal(random), 0.4 * normal(random));
+      if (share(random) < 0.08) error_px += Eigen::Vector2d(far(random), far(random));
+      Eigen::Matrix2d px_per_unit;
+      px_per_unit << 230.0 + 10.0 * normal(random), 5.0 * normal(random), 5.0 * normal(random), 210.0;
+      problem.observations.push_back({i, p, q.head<2>() / q.z() + px_per_unit.inverse() * error_px, px_per_unit});
+    }
+  }
+  for (int i = 2; i < kFrames; ++i) {
+    Vector6d twist;
+    for (int k = 0; k < 6; ++k) twist[k] = (k < 3 ? 0.03 : 0.003) * normal(random);
+    problem.T_cam_world[i] = SE3::Exp(twist) * problem.T_cam_world[i];
+  }
+  for (auto& point : problem.points) point.inverse_depth.z() *= std::exp(0.1 * normal(random));
+  return problem;
+}
+
+/// The sum over the errors of one track, weighted; the parameters are its point and then all poses, T_cam_world as axis
+/// times angle and translation.
+struct Innovation {
+  const BundleProblem& problem;
+  std::size_t first;  // observation
+  Eigen::VectorXd weights;
+
+  template <typename T>
+  bool operator()(const T* const* parameters, T* residual) const {
+    Eigen::Map<Eigen::Matrix<T, 2, 1>> sum(residual);
+    sum.setZero();
+    for (Eigen::Index k = 0; k < weights.size(); ++k) {
+      const BundleObservation& observation = problem.observations[first + static_cast<std::size_t>(k)];
+      const T* const anchor = parameters[1 + problem.points[observation.point].anchor];
+      const T* const camera = parameters[1 + observation.frame];
+      const T* const point = parameters[0];
+      const T back[3] = {-anchor[0], -anchor[1], -anchor[2]};
+      const T centred[3] = {point[0] / point[2] - anchor[3], point[1] / point[2] - anchor[4],
+                            1.0 / point[2] - anchor[5]};
+      T world[3], turned[3];
+      ceres::AngleAxisRotatePoint(back, centred, world);
+      ceres::AngleAxisRotatePoint(camera, world, turned);
+      const T z = turned[2] + camera[5];
+      const Eigen::Matrix<T, 2, 1> projection((turned[0] + camera[3]) / z, (turned[1] + camera[4]) / z);
+      sum += weights[k] * (observation.px_per_unit * (observation.x - projection));
+    }
+    return true;
+  }
+};
+
+struct HeldDistance {
+  double length;
+
+  template <typename T>
+  bool operator()(const T* pose, T* residual) const {
+    residual[0] = kScalePrior * (Eigen::Map<const Eigen::Matrix<T, 3, 1>>(pose + 3).norm() / length - 1.0);
+    return true;
+  }
+};
+
+/// What makes innovations of the errors of the track that begins with that observation: the inverse of its covariance's
+/// Cholesky factor, in units of an innovation late in a track.
+Eigen::MatrixXd Whitening(const BundleProblem& problem, double drift, std::size_t first, std::size_t end) {
+  std::vector<double> magnifications;
+  for (std::size_t i = first; i < end; ++i) {
+    const BundlePoint& point = problem.points[problem.observations[i].point];
+    const Eigen::Vector3d q = problem.T_cam_world[problem.observations[i].frame] * WorldPosition(problem, point);
+    magnifications.push_back(1.0 / (q.z() * point.inverse_depth.z()));
+  }
+  const Eigen::MatrixXd factor = testing::TrackCovariance(drift, magnifications).llt().matrixL();
+  const double settled = 0.5 * (drift + std::sqrt(drift * drift + 4.0 * drift));
+  return std::sqrt(1.0 + settled) * factor.inverse();
+}
+
+/// A residual and a loss for every sighting of that track.
+void AddTrack(const BundleProblem& start, double drift, std::size_t first, std::size_t end,
+              const std::vector<double*>& parameters, ceres::Problem* ceres) {
+  const Eigen::MatrixXd whitening = Whitening(start, drift, first, end);
+  for (Eigen::Index k = 0; k < whitening.rows(); ++k) {
+    auto* const cost =
+        new ceres::DynamicAutoDiffCostFunction<Innovation>(new Innovation{start, first, whitening.row(k).head(k + 1)});
+    cost->AddParameterBlock(3);
+    for (int i = 0; i < kFrames; ++i) cost->AddParameterBlock(6);
+    cost->SetNumResiduals(2);
+    ceres->AddResidualBlock(cost, new ceres::CauchyLoss(kLossPx), parameters);
+  }
+}
+
+/// What AdjustBundle does, by Ceres and its derivatives; the cost.
+double AdjustByCeres(double drift, BundleProblem* problem) {
+  const BundleProblem start = *problem;
+  std::vector<Vector6d> poses(kFrames);
+  ceres::Problem ceres;
+  for (int i = 0; i < kFrames; ++i) {
+    poses[i] << so3::Log(start.T_cam_world[i].rotation()), start.T_cam_world[i].translation();
+    ceres.AddParameterBlock(poses[i].data(), 6);
+    if (i < start.fixed_frames) ceres.SetParameterBlockConstant(poses[i].data());
+  }
+  for (std::size_t first = 0, end = 0; first < start.observations.size(); first = end) {
+    const int point = start.observations[first].point;
+    while (end < start.observations.size() && start.observations[end].point == point) ++end;
+    std::vector<double*> parameters = {problem->points[point].inverse_depth.data()};
+    for (auto& pose : poses) parameters.push_back(pose.data());
+    AddTrack(start, drift, first, end, parameters, &ceres);
+  }
+  if (start.scale_frame >= 0) {
+    const double length = start.T_cam_world[start.scale_frame].translation().norm();
+    ceres.AddResidualBlock(new ceres::AutoDiffCostFunction<HeldDistance, 1, 6>(new HeldDistance{length}), nullptr,
+                           poses[start.scale_frame].data());
+  }
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = 300;
+  options.function_tolerance = 1e-15;
+  options.gradient_tolerance = 1e-12;
+  options.parameter_tolerance = 1e-14;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &ceres, &summary);
+  EXPECT_EQ(summary.termination_type, ceres::CONVERGENCE) << summary.message;
+  for (int i = 0; i < kFrames; ++i) {
+    problem->T_cam_world[i] = SE3(so3::Exp(poses[i].head<3>()), poses[i].tail<3>());
+  }
+  return summary.final_cost;
+}
+
+double LargestPoseDifference(const BundleProblem& a, const BundleProblem& b) {
+  double largest = 0.0;
+  for (int i = 0; i < kFrames; ++i) {
+    largest = std::max(largest, (a.T_cam_world[i] * b.T_cam_world[i].Inverse()).Log().norm());
+  }
+  return largest;
+}
+
+void ExpectTheSameMinimum(double drift, int fixed_frames, int scale_frame) {
+  for (std::uint32_t seed = 2; seed <= 4; ++seed) {
+    auto start = DisturbedDrive(seed);
+    start.fixed_frames = fixed_frames;
+    start.scale_frame = scale_frame;
+    auto ours = start;
+    auto theirs = start;
+    const BundleSummary summary =
+        AdjustBundle({.iterations = 300, .loss_px = kLossPx, .drift = drift, .relative_decrease = 1e-15}, &ours);
+    const double cost = AdjustByCeres(drift, &theirs);
+    EXPECT_LT(summary.final_cost, 0.6 * summary.initial_cost) << seed;
+    EXPECT_GT(LargestPoseDifference(ours, start), 0.02) << seed;
+    EXPECT_NEAR(summary.final_cost, cost, 1e-10 * cost) << seed;
+    EXPECT_LT(LargestPoseDifference(ours, theirs), 1e-6) << seed;
+    for (std::size_t p = 0; p < ours.points.size(); ++p) {
+      EXPECT_LT((ours.points[p].inverse_depth - theirs.points[p].inverse_depth).norm(), 1e-6) << seed << " " << p;
+    }
+  }
+}
+
+TEST(BundleByCeres, HasTheSameMinimum) { ExpectTheSameMinimum(0.0, 2, -1); }
+
+TEST(BundleByCeres, HasTheSameMinimumWhereAFrameHoldsTheScale) { ExpectTheSameMinimum(0.0, 1, kFrames - 1); }
+
+TEST(BundleByCeres, HasTheSameMinimumWhereTracksDrift) { ExpectTheSameMinimum(0.5, 2, -1); }
+
+}  // namespace
+}  // namespace evo
