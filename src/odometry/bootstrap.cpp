@@ -116,12 +116,24 @@ std::optional<Bootstrap> Bootstrapper::Try(int first, int last) {
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (motion->inliers[i]) parallaxes.push_back(Parallax(*pairs[i].first, *pairs[i].second, motion->T_2_1));
   }
-  const double parallax_deg = Median(parallaxes) * 180.0 / std::numbers::pi;
-  if (parallax_deg < options_.min_parallax_deg) {
-    Refuse("too little parallax (" + Decimal(parallax_deg) + " degrees): the camera only turned");
-    return std::nullopt;
+  if (!HasParallax(parallaxes)) return std::nullopt;
+  auto bootstrap = FromMotion(first, last, pairs, motion->T_2_1, motion->inliers);
+  if (!bootstrap) return std::nullopt;
+  // Once more: two views of a turn also fit a slightly other turn and a move past things at one distance. All frames
+  // together do not.
+  parallaxes.clear();
+  for (const Point& point : bootstrap->points) {
+    const Feature& begin = *frames_[first].Find(point.track);
+    const Feature& end = *frames_[last].Find(point.track);
+    parallaxes.push_back(Parallax(begin, end, bootstrap->T_cam_world.back()));
   }
-  return FromMotion(first, last, pairs, motion->T_2_1, motion->inliers);
+  return HasParallax(parallaxes) ? bootstrap : std::nullopt;
+}
+
+bool Bootstrapper::HasParallax(const std::vector<double>& parallaxes) {
+  const double degrees = Median(parallaxes) * 180.0 / std::numbers::pi;
+  return degrees >= options_.min_parallax_deg ||
+         Refuse("too little parallax (" + Decimal(degrees) + " degrees): the camera only turned");
 }
 
 std::optional<Bootstrap> Bootstrapper::FromMotion(int first, int last, const std::vector<FeaturePair>& pairs,

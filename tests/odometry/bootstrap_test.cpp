@@ -120,6 +120,15 @@ TEST(BootstrapGeometry, ACameraThatStandsIsRefused) {
   }
 }
 
+TEST(BootstrapGeometry, ACameraThatOnlyTurnsIsRefused) {
+  for (std::uint32_t seed = 1; seed <= 15; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> both(-0.01, 0.01);
+    const Scene scene{.turn = {both(random), both(random), both(random)}};
+    EXPECT_FALSE(FirstMap(Record(scene, seed))) << seed;
+  }
+}
+
 TEST(BootstrapGeometry, TracksThatAllMoveByThemselvesAreRefused) {
   for (std::uint32_t seed = 1; seed <= 3; ++seed) {
     std::string obstacle;

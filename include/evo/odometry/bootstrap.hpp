@@ -52,6 +52,8 @@ class Bootstrapper {
                                       const std::vector<bool>& inliers);
   bool TrackBetween(Bootstrap* bootstrap) const;
   bool Refine(Bootstrap* bootstrap) const;
+  /// Of the points' `parallaxes`, rad; refuses if not.
+  bool HasParallax(const std::vector<double>& parallaxes);
   bool Refuse(const std::string& why);
 
   BootstrapOptions options_;
