@@ -116,6 +116,20 @@ double PointCost(const BundleProblem& problem, const ErrorModel& model, std::siz
   return cost;
 }
 
+/// What the changes of velocity cost.
+double MotionCost(const BundleProblem& problem, double loss_px) {
+  const MotionPrior& motion = problem.motion;
+  double cost = 0.0;
+  for (std::size_t i = 1; i + 1 < motion.t.size(); ++i) {
+    const SE3* const poses = &problem.T_cam_world[i];
+    const Vector6d change = MeasureVelocityChange(poses[-1], poses[0], poses[1], motion.t[i] - motion.t[i - 1],
+                                                  motion.t[i + 1] - motion.t[i]);
+    cost += CauchyCost((motion.translation_px * change.head<3>()).squaredNorm(), loss_px) +
+            CauchyCost((motion.rotation_px * change.tail<3>()).squaredNorm(), loss_px);
+  }
+  return cost;
+}
+
 /// A few damped steps of one point alone.
 double SettlePoint(const ErrorModel& model, std::size_t begin, std::size_t end, BundleProblem* problem) {
   thread_local TrackEquations track;
@@ -149,7 +163,7 @@ double SettlePoint(const ErrorModel& model, std::size_t begin, std::size_t end, 
   return cost;
 }
 
-/// All points' costs after a step. A point that the common step has made worse, one far away or nearly on the path,
+/// All costs after a step. A point that the common step has made worse, one far away or nearly on the path,
 /// goes back and settles by itself, lest it hold up all the others.
 double CostAfterStep(const std::vector<BundlePoint>& old_points, const ErrorModel& model,
                      const std::vector<std::size_t>& begin, ThreadPool* pool, std::vector<double>* costs,
@@ -164,7 +178,7 @@ double CostAfterStep(const std::vector<BundlePoint>& old_points, const ErrorMode
     }
     (*costs)[p] = cost;
   });
-  return std::accumulate(costs->begin(), costs->end(), 0.0);
+  return std::accumulate(costs->begin(), costs->end(), MotionCost(*problem, model.loss_px));
 }
 
 /// What a point's numbers lose when its anchor moves by the left twist and the point stays, to first order.
@@ -233,7 +247,7 @@ std::vector<Eigen::Vector2d> BundleDrifts(const BundleProblem& problem, double d
 std::vector<int> BundleSkyline(const BundleProblem& problem) {
   const int poses = std::max(0, static_cast<int>(problem.T_cam_world.size()) - problem.fixed_frames);
   std::vector<int> first(static_cast<std::size_t>(poses));
-  std::iota(first.begin(), first.end(), 0);
+  for (int i = 0; i < poses; ++i) first[i] = problem.motion.t.empty() ? i : std::max(0, i - 2);
   int point = -1;
   int lowest = 0;
   for (const auto& observation : problem.observations) {  // in order of points, then of frames
@@ -255,7 +269,8 @@ BundleSummary AdjustBundle(const BundleOptions& options, BundleProblem* problem,
   ForEachIndex(pool, costs.size(), kPointsAtOnce,
                [&](std::size_t p) { costs[p] = PointCost(*problem, model, begin[p], begin[p + 1]); });
   BundleSummary summary;
-  summary.initial_cost = summary.final_cost = std::accumulate(costs.begin(), costs.end(), 0.0);
+  summary.initial_cost = summary.final_cost =
+      std::accumulate(costs.begin(), costs.end(), MotionCost(*problem, options.loss_px));
   BundleEquations equations(*problem, model, begin, pool);
   double damping = kSmallestDamping;
   Eigen::VectorXd pose_steps;

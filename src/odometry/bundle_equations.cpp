@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <utility>
 
@@ -108,6 +109,7 @@ void BundleEquations::Linearize() {
   poses_.SetZero();
   pose_gradient_ = Eigen::VectorXd::Zero(Eigen::Index{6} * reduced_.rows());
   ForEachPoint([&](std::size_t p) { LinearizePoint(p); });
+  LinearizeMotion();
   if (problem_.scale_frame >= problem_.fixed_frames) LinearizeScale();
 }
 
@@ -120,6 +122,31 @@ void BundleEquations::LinearizeScale() {
   const int pose = problem_.scale_frame - problem_.fixed_frames;
   poses_.At(pose, pose) += by_pose.transpose() * by_pose;
   pose_gradient_.segment<6>(Eigen::Index{6} * pose) += by_pose.transpose() * kScalePrior * (norm / scale_length_ - 1.0);
+}
+
+void BundleEquations::LinearizeMotion() {
+  const MotionPrior& motion = problem_.motion;
+  for (std::size_t i = 1; i + 1 < motion.t.size(); ++i) {
+    const SE3* const poses = &problem_.T_cam_world[i];
+    const VelocityChange change = LinearizeVelocityChange(poses[-1], poses[0], poses[1], motion.t[i] - motion.t[i - 1],
+                                                          motion.t[i + 1] - motion.t[i]);
+    const std::array derivatives = {change.by_before, change.by_here, change.by_after};
+    for (const auto& [rows, px] : {std::pair(0, motion.translation_px), std::pair(3, motion.rotation_px)}) {
+      const Eigen::Vector3d error = px * change.value.segment<3>(rows);
+      const double weight = CauchyWeight(error.squaredNorm(), model_.loss_px);
+      for (int k = 0; k < 3; ++k) {
+        const int row = static_cast<int>(i) - 1 + k - problem_.fixed_frames;
+        if (row < 0) continue;
+        const Eigen::Matrix<double, 6, 3> turned = weight * px * derivatives[k].middleRows<3>(rows).transpose();
+        pose_gradient_.segment<6>(Eigen::Index{6} * row).noalias() += turned * error;
+        for (int l = 0; l <= k; ++l) {
+          const int column = row - k + l;
+          if (column < 0) continue;
+          poses_.At(row, column).noalias() += turned * (px * derivatives[l].middleRows<3>(rows));
+        }
+      }
+    }
+  }
 }
 
 void BundleEquations::LinearizePoint(std::size_t p) {

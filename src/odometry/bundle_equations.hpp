@@ -77,6 +77,7 @@ class BundleEquations {
   void ForEachPoint(const std::function<void(std::size_t)>& work);
   void LinearizePoint(std::size_t p);
   void LinearizeScale();
+  void LinearizeMotion();
   /// The reduced system into `reduced_` and `right`.
   void Reduce(double lambda, Eigen::VectorXd* right);
   void EliminatePoint(std::size_t p, double lambda, Eigen::VectorXd* right);

@@ -44,10 +44,11 @@ void DropContradictions(BundleProblem* problem) {
 
 /// Rounds of adjustment, each with the noise that the one before has left; returns the last round's options.
 BundleOptions Adjust(const FinalRefinementOptions& options, const std::function<void(double)>& progress,
-                     ThreadPool* pool, BundleProblem* problem) {
+                     const std::vector<double>& t, ThreadPool* pool, BundleProblem* problem) {
   BundleOptions last{.iterations = options.iterations, .drift = options.drift};
   for (int round = 0; round < options.rounds; ++round) {
     const double sigma_px = MeasureNoise(BundleInnovations(*problem, options.drift));
+    if (options.motion > 0.0) problem->motion = MeasureMotion(problem->T_cam_world, t, options.motion, sigma_px);
     last.loss_px = kCauchyEfficient * sigma_px;
     const auto summary = AdjustBundle(last, problem, pool);
     spdlog::debug(
@@ -203,6 +204,8 @@ void Register(Parameters& parameters, FinalRefinementOptions& options) {
                  "image motion in px between the frames that take part");
   parameters.Add("odometry.final.drift", &options.drift, 0, 100,
                  "variance by which tracks drift from frame to frame, over that of their noise");
+  parameters.Add("odometry.final.motion", &options.motion, 0, 1000,
+                 "velocity is expected to change so many times as much as usual; 0: no matter how much");
   parameters.Add("odometry.final.iterations", &options.iterations, 1, 1000, "iterations of each round");
   parameters.Add("odometry.final.rounds", &options.rounds, 1, 100, "rounds, the noise measured anew before each");
   parameters.Add("odometry.final.budget", &options.budget, 1e3, 1e12,
@@ -212,7 +215,11 @@ void Register(Parameters& parameters, FinalRefinementOptions& options) {
 void RefineSegment(const FinalRefinementOptions& options, const std::vector<Frame>& frames, int before, int after,
                    const std::function<void(double)>& progress, ThreadPool* pool, Segment* segment) {
   RunBundle run = BuildRunBundle(options, frames, *segment);
-  const BundleOptions adjusted = Adjust(options, progress, pool, &run.bundle);
+  std::vector<double> t;
+  for (const std::size_t place : run.frames) {
+    t.push_back(ToSeconds(frames[segment->frames[place]].t - frames[segment->frames.front()].t));
+  }
+  const BundleOptions adjusted = Adjust(options, progress, t, pool, &run.bundle);
   auto covariances = PoseCovariances(adjusted, run.bundle, pool);
   covariances.resize(run.frames.size(), Eigen::Matrix<double, 6, 6>::Zero());
   const RefinedPoints points = TakePoints(run, options.drift, segment);

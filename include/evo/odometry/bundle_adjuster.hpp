@@ -5,6 +5,7 @@
 
 #include "evo/core/parallel.hpp"
 #include "evo/geometry/se3.hpp"
+#include "evo/odometry/motion_prior.hpp"
 
 namespace evo {
 
@@ -26,6 +27,7 @@ struct BundleProblem {
   std::vector<SE3> T_cam_world;  ///< in order of time
   int fixed_frames = 1;          ///< the first so many poses stay: 1 leaves the scale free, 2 holds it
   int scale_frame = -1;          ///< a frame whose distance from the first is held, to hold the scale; -1: none
+  MotionPrior motion;
   std::vector<BundlePoint> points;
   std::vector<BundleObservation> observations;  ///< in order of points, then of frames
 };
@@ -54,8 +56,9 @@ bool Linearize(const SE3& T_cam_anchor, const Eigen::Vector3d& inverse_depth, co
                BundleJacobian* jacobian);
 
 /// Refines poses and points together: Levenberg-Marquardt on Cauchy's loss of the innovations of the reprojection
-/// errors, the points eliminated by Schur's complement, the poses solved by a skyline Cholesky factorisation. The
-/// result does not depend on the number of threads of `pool`; without one this thread does it all.
+/// errors and of the changes of velocity, the points eliminated by Schur's complement, the poses solved by a skyline
+/// Cholesky factorisation. The result does not depend on the number of threads of `pool`; without one this thread does
+/// it all.
 BundleSummary AdjustBundle(const BundleOptions& options, BundleProblem* problem, ThreadPool* pool = nullptr);
 
 /// Covariances of the poses' left twists (translation, rotation) at a minimum that AdjustBundle has found with the same
@@ -78,7 +81,8 @@ std::vector<Eigen::Vector2d> BundleInnovations(const BundleProblem& problem, dou
 /// The part of every residual that is thought to be drift, see EstimateDrift.
 std::vector<Eigen::Vector2d> BundleDrifts(const BundleProblem& problem, double drift);
 
-/// For every pose that is free, the first free pose that shares a point with it: the skyline of the reduced system.
+/// For every pose that is free, the first free pose that shares a point or a change of velocity with it: the skyline of
+/// the reduced system.
 std::vector<int> BundleSkyline(const BundleProblem& problem);
 
 }  // namespace evo

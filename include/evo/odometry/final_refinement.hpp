@@ -16,8 +16,10 @@ struct FinalRefinementOptions {
   /// Variance of what tracks drift by from one of these frames to the next, over that of their noise, see
   /// InnovationStep.
   double drift = 0.07;
+  /// Velocity is expected to change so many times as much as is usual, see MotionPrior; 0: no matter how much.
+  double motion = 3.0;
   int rounds = 3;       ///< of adjustment, the noise measured anew before each
-  int iterations = 5;  ///< of each round
+  int iterations = 5;   ///< of each round
   double budget = 4e6;  ///< 6x6 block products an iteration may cost; beyond it frames are thinned out
 };
 void Register(Parameters& parameters, FinalRefinementOptions& options);

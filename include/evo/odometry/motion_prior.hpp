@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "evo/geometry/se3.hpp"
+
+namespace evo {
+
+/// A camera does not jump: what its velocity changes by is white noise (the constant-velocity model). Matters only
+/// where tracks are so few that one bad one throws a pose aside.
+struct MotionPrior {
+  std::vector<double> t;        ///< s, of every pose; empty: no expectation
+  double translation_px = 0.0;  ///< what a unit of VelocityChange costs, as an error of a sighting
+  double rotation_px = 0.0;     ///< the same of its rotation
+};
+
+/// The change of velocity at a pose, over the root of the time that it took: (translation, rotation) of the camera's
+/// motion per s^1.5, and its derivatives by the left twists of the three poses, to second order in the angle between
+/// them.
+struct VelocityChange {
+  Vector6d value;
+  Eigen::Matrix<double, 6, 6> by_before, by_here, by_after;
+};
+
+/// `before_s` and `after_s` are the times from the pose before, and to the one after.
+Vector6d MeasureVelocityChange(const SE3& before, const SE3& here, const SE3& after, double before_s, double after_s);
+VelocityChange LinearizeVelocityChange(const SE3& before, const SE3& here, const SE3& after, double before_s,
+                                       double after_s);
+
+/// With the costs of a prior that expects velocity to change `times` as much as is usual among `poses`, whose sightings
+/// have the noise `sigma_px`.
+MotionPrior MeasureMotion(const std::vector<SE3>& poses, std::vector<double> t, double times, double sigma_px);
+
+}  // namespace evo
