@@ -260,6 +260,32 @@ TEST(BundleAdjuster, ThreadsChangeNothing) {
   }
 }
 
+/// A pose seen by a few tracks, one of which has slipped.
+TEST(BundleAdjuster, ExpectingTheUsualMotionHoldsAPoseOfFewTracks) {
+  constexpr int kFrame = 6;
+  double with = 0.0, without = 0.0;  // largest errors
+  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+    auto truth = Drive(12, 120, 0.2, seed);
+    truth.fixed_frames = 2;
+    int seen = 0;
+    std::erase_if(truth.observations, [&](const BundleObservation& o) { return o.frame == kFrame && ++seen > 5; });
+    std::ranges::find(truth.observations, kFrame, &BundleObservation::frame)->x.x() += 4.0 / 226.0;
+    const auto error_of = [&](const MotionPrior& motion) {
+      auto problem = truth;
+      problem.motion = motion;
+      Disturb(&problem, 0.01);
+      AdjustBundle({.iterations = 50, .loss_px = 0.5}, &problem);
+      return (problem.T_cam_world[kFrame] * truth.T_cam_world[kFrame].Inverse()).Log().norm();
+    };
+    MotionPrior motion{{}, 0.2, 2.0};
+    for (int i = 0; i < 12; ++i) motion.t.push_back(0.02 * i);
+    with = std::max(with, error_of(motion));
+    without = std::max(without, error_of({}));
+  }
+  EXPECT_LT(with, 0.03);
+  EXPECT_GT(without, 0.1);
+}
+
 TEST(BundleAdjuster, OutliersHardlyMatter) {
   const auto truth = Drive(12, 200, 0.0, 4);
   auto problem = Drive(12, 200, 0.3, 4);

@@ -15,9 +15,9 @@ struct FinalRefinementOptions {
   double min_disparity_px = 1.5;  ///< frames with less image motion since the last one taken are left to the end
   /// Variance of what tracks drift by from one of these frames to the next, over that of their noise, see
   /// InnovationStep.
-  double drift = 0.07;
+  double drift = 0.04;
   /// Velocity is expected to change so many times as much as is usual, see MotionPrior; 0: no matter how much.
-  double motion = 3.0;
+  double motion = 2.0;
   int rounds = 3;       ///< of adjustment, the noise measured anew before each
   int iterations = 5;   ///< of each round
   double budget = 4e6;  ///< 6x6 block products an iteration may cost; beyond it frames are thinned out

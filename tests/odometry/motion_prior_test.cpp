@@ -1,0 +1,75 @@
+#include "evo/odometry/motion_prior.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace evo {
+namespace {
+
+Vector6d Twist(std::mt19937* random, double translation, double rotation) {
+  std::normal_distribution<double> normal;
+  Vector6d twist;
+  for (int k = 0; k < 6; ++k) twist[k] = (k < 3 ? translation : rotation) * normal(*random);
+  return twist;
+}
+
+TEST(MotionPrior, AConstantVelocityCostsNothing) {
+  std::mt19937 random(1);
+  const Vector6d velocity = Twist(&random, 5.0, 1.0);
+  const SE3 here = SE3::Exp(Twist(&random, 3.0, 1.0));
+  const Vector6d change = MeasureVelocityChange(SE3::Exp(-0.02 * velocity) * here, here,
+                                                SE3::Exp(0.05 * velocity) * here, 0.02, 0.05);
+  EXPECT_LT(change.norm(), 1e-9);
+}
+
+TEST(MotionPrior, DerivativesMatchFiniteDifferences) {
+  constexpr double kStep = 1e-6;
+  std::mt19937 random(2);
+  for (int trial = 0; trial < 20; ++trial) {
+    const SE3 before = SE3::Exp(Twist(&random, 3.0, 1.0));
+    const SE3 here = SE3::Exp(Twist(&random, 0.3, 0.05)) * before;
+    const SE3 after = SE3::Exp(Twist(&random, 0.3, 0.05)) * here;
+    const auto change = LinearizeVelocityChange(before, here, after, 0.02, 0.03);
+    EXPECT_LT((change.value - MeasureVelocityChange(before, here, after, 0.02, 0.03)).norm(), 1e-9);
+    const auto expect = [&](const Eigen::Matrix<double, 6, 6>& by, const auto& moved) {
+      Eigen::Matrix<double, 6, 6> numeric;
+      for (int k = 0; k < 6; ++k) {
+        const Vector6d d = kStep * Vector6d::Unit(k);
+        numeric.col(k) = (moved(SE3::Exp(d)) - moved(SE3::Exp(-d))) / (2.0 * kStep);
+      }
+      EXPECT_LT((by - numeric).norm(), 1e-4 * numeric.norm()) << trial;
+    };
+    expect(change.by_before, [&](const SE3& d) { return MeasureVelocityChange(d * before, here, after, 0.02, 0.03); });
+    expect(change.by_here, [&](const SE3& d) { return MeasureVelocityChange(before, d * here, after, 0.02, 0.03); });
+    expect(change.by_after, [&](const SE3& d) { return MeasureVelocityChange(before, here, d * after, 0.02, 0.03); });
+  }
+}
+
+TEST(MotionPrior, MeasuresWhatIsUsual) {
+  constexpr double kTranslation = 0.5;  // per s^1.5
+  constexpr double kRotation = 0.1;
+  std::mt19937 random(3);
+  std::vector<SE3> poses(1);
+  std::vector<double> t = {0.0};
+  Vector6d velocity = Vector6d::Zero();
+  for (int i = 0; i < 2000; ++i) {
+    const double step = i % 3 == 0 ? 0.04 : 0.02;
+    if (i > 0) velocity += std::sqrt(0.5 * (step + t[i] - t[i - 1])) * Twist(&random, kTranslation, kRotation);
+    poses.push_back(SE3::Exp(step * velocity) * poses.back());
+    t.push_back(t.back() + step);
+  }
+  const MotionPrior prior = MeasureMotion(poses, t, 2.0, 0.3);
+  EXPECT_EQ(prior.t, t);
+  EXPECT_NEAR(prior.translation_px, 0.3 / (2.0 * kTranslation), 0.05 * prior.translation_px);
+  EXPECT_NEAR(prior.rotation_px, 0.3 / (2.0 * kRotation), 0.05 * prior.rotation_px);
+}
+
+TEST(MotionPrior, NothingIsUsualForAFewPosesOrWithoutMotion) {
+  EXPECT_TRUE(MeasureMotion({SE3(), SE3()}, {0.0, 1.0}, 2.0, 0.3).t.empty());
+  EXPECT_TRUE(MeasureMotion(std::vector<SE3>(5), {0.0, 1.0, 2.0, 3.0, 4.0}, 2.0, 0.3).t.empty());
+}
+
+}  // namespace
+}  // namespace evo
