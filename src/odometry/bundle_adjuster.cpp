@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
-#include <random>
 #include <span>
 #include <utility>
 
@@ -20,7 +19,6 @@ constexpr double kRetryDamping = 1e-7;      // at least, after a step that did n
 constexpr double kLargestDamping = 1e6;
 constexpr double kLargestMagnification = 10.0;
 constexpr std::size_t kPointsAtOnce = 64;
-constexpr int kDraws = 100;  // for covariances
 constexpr int kSettleSteps = 3;
 constexpr double kSettleDamping = 1e-3;
 
@@ -37,32 +35,6 @@ bool Error(const SE3& T_cam_anchor, const Eigen::Vector3d& inverse_depth, const 
   if (!(y.z() > 0.0)) return false;
   *error = observation.px_per_unit * (observation.x - y.head<2>() / y.z());
   return true;
-}
-
-std::vector<std::size_t> FirstObservations(const BundleProblem& problem) {
-  std::vector<std::size_t> begin(problem.points.size() + 1, problem.observations.size());
-  for (std::size_t i = problem.observations.size(); i-- > 0;) begin[problem.observations[i].point] = i;
-  for (std::size_t p = problem.points.size(); p-- > 0;) begin[p] = std::min(begin[p], begin[p + 1]);
-  return begin;
-}
-
-/// Of all observations.
-std::vector<InnovationStep> InnovationSteps(const BundleProblem& problem, double drift) {
-  std::vector<InnovationStep> steps;
-  std::vector<double> magnifications;
-  const auto begin = FirstObservations(problem);
-  for (std::size_t p = 0; p < problem.points.size(); ++p) {
-    magnifications.clear();
-    const BundlePoint& point = problem.points[p];
-    const SE3 T_world_anchor = problem.T_cam_world[point.anchor].Inverse();
-    for (std::size_t i = begin[p]; i < begin[p + 1]; ++i) {
-      const SE3 T_cam_anchor = problem.T_cam_world[problem.observations[i].frame] * T_world_anchor;
-      const double depth_share = ScaledInCamera(T_cam_anchor, point.inverse_depth).z();  // of that at first
-      magnifications.push_back(1.0 / std::clamp(depth_share, 1.0 / kLargestMagnification, kLargestMagnification));
-    }
-    AppendInnovationSteps(drift, magnifications, &steps);
-  }
-  return steps;
 }
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -207,6 +179,31 @@ void Apply(const Eigen::VectorXd& pose_steps, const std::vector<Eigen::Vector3d>
 
 }  // namespace
 
+std::vector<std::size_t> FirstObservations(const BundleProblem& problem) {
+  std::vector<std::size_t> begin(problem.points.size() + 1, problem.observations.size());
+  for (std::size_t i = problem.observations.size(); i-- > 0;) begin[problem.observations[i].point] = i;
+  for (std::size_t p = problem.points.size(); p-- > 0;) begin[p] = std::min(begin[p], begin[p + 1]);
+  return begin;
+}
+
+std::vector<InnovationStep> InnovationSteps(const BundleProblem& problem, double drift) {
+  std::vector<InnovationStep> steps;
+  std::vector<double> magnifications;
+  const auto begin = FirstObservations(problem);
+  for (std::size_t p = 0; p < problem.points.size(); ++p) {
+    magnifications.clear();
+    const BundlePoint& point = problem.points[p];
+    const SE3 T_world_anchor = problem.T_cam_world[point.anchor].Inverse();
+    for (std::size_t i = begin[p]; i < begin[p + 1]; ++i) {
+      const SE3 T_cam_anchor = problem.T_cam_world[problem.observations[i].frame] * T_world_anchor;
+      const double depth_share = ScaledInCamera(T_cam_anchor, point.inverse_depth).z();  // of that at first
+      magnifications.push_back(1.0 / std::clamp(depth_share, 1.0 / kLargestMagnification, kLargestMagnification));
+    }
+    AppendInnovationSteps(drift, magnifications, &steps);
+  }
+  return steps;
+}
+
 Eigen::Vector3d WorldPosition(const BundleProblem& problem, const BundlePoint& point) {
   return problem.T_cam_world[point.anchor].Inverse() *
          Eigen::Vector3d(point.inverse_depth.head<2>().homogeneous() / point.inverse_depth.z());
@@ -299,27 +296,6 @@ BundleSummary AdjustBundle(const BundleOptions& options, BundleProblem* problem,
     if (decrease < options.relative_decrease * cost) break;
   }
   return summary;
-}
-
-std::vector<Eigen::Matrix<double, 6, 6>> PoseCovariances(const BundleOptions& options, const BundleProblem& problem,
-                                                         ThreadPool* pool) {
-  const auto begin = FirstObservations(problem);
-  const ErrorModel model{InnovationSteps(problem, options.drift), options.loss_px};
-  BundleEquations equations(problem, model, begin, pool);
-  equations.Linearize();
-  if (!equations.Factorize()) return {};
-  std::vector<Eigen::Matrix<double, 6, 6>> covariances(problem.T_cam_world.size(), Eigen::Matrix<double, 6, 6>::Zero());
-  std::mt19937 random(1);  // its numbers, unlike those of distributions, are the same everywhere
-  std::vector<double> signs(problem.points.size());
-  for (int draw = 0; draw < kDraws; ++draw) {
-    for (double& sign : signs) sign = random() % 2 == 0 ? 1.0 : -1.0;
-    const Eigen::VectorXd steps = equations.StepsIf(signs);
-    for (Eigen::Index i = 0; i < steps.size() / 6; ++i) {
-      const Vector6d step = steps.segment<6>(Eigen::Index{6} * i);
-      covariances[static_cast<std::size_t>(problem.fixed_frames + i)] += step * step.transpose() / kDraws;
-    }
-  }
-  return covariances;
 }
 
 }  // namespace evo

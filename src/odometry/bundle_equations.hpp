@@ -28,6 +28,12 @@ inline void ForEachIndex(ThreadPool* pool, std::size_t count, std::size_t chunk,
   }
 }
 
+/// Of every point its first observation, and the number of all observations at the end.
+std::vector<std::size_t> FirstObservations(const BundleProblem& problem);
+
+/// Of all observations, with the magnifications at the problem's present values.
+std::vector<InnovationStep> InnovationSteps(const BundleProblem& problem, double drift);
+
 /// What errors are thought to be like, and how much a large one counts.
 struct ErrorModel {
   std::vector<InnovationStep> steps;  ///< of all observations

@@ -9,6 +9,7 @@
 
 #include "evo/odometry/bundle_adjuster.hpp"
 #include "evo/odometry/pose_optimizer.hpp"
+#include "evo/odometry/pose_uncertainty.hpp"
 #include "odometry/median.hpp"
 #include "odometry/run_bundle.hpp"
 
@@ -220,20 +221,22 @@ void RefineSegment(const FinalRefinementOptions& options, const std::vector<Fram
     t.push_back(ToSeconds(frames[segment->frames[place]].t - frames[segment->frames.front()].t));
   }
   const BundleOptions adjusted = Adjust(options, progress, t, pool, &run.bundle);
-  auto covariances = PoseCovariances(adjusted, run.bundle, pool);
-  covariances.resize(run.frames.size(), Eigen::Matrix<double, 6, 6>::Zero());
+  const PoseUncertainty uncertainty(adjusted, run.bundle, pool);
+  const auto [first, end] = uncertainty.CertainStretch();
+  const auto covariances = uncertainty.Covariances(first);
   const RefinedPoints points = TakePoints(run, options.drift, segment);
   PoseFiller filler(frames, points);
   const auto& poses = run.bundle.T_cam_world;
-  for (std::size_t k = 0; k < run.frames.size(); ++k) {
+  for (std::size_t k = first; k < end; ++k) {
     const int frame = segment->frames[run.frames[k]];
     filler.Keep(frame, poses[k], covariances[k]);
-    const bool last = k + 1 == run.frames.size();
-    const int next = last ? segment->frames.back() + 1 : segment->frames[run.frames[k + 1]];
-    for (int between = frame + 1; between < next; ++between) filler.Estimate(between, poses[k], covariances[k]);
+    const bool at_end = k + 1 == run.frames.size();
+    const int next = at_end ? segment->frames.back() + 1 : segment->frames[run.frames[k + 1]];
+    for (int between = frame + 1; between < next && (at_end || k + 1 < end); ++between)
+      filler.Estimate(between, poses[k], covariances[k]);
   }
-  filler.Extend(segment->frames.front() - 1, before - 1, -1, poses.front(), covariances.front());
-  filler.Extend(segment->frames.back() + 1, after, 1, poses.back(), covariances.back());
+  if (first == 0) filler.Extend(segment->frames.front() - 1, before - 1, -1, poses.front(), covariances.front());
+  if (end == poses.size()) filler.Extend(segment->frames.back() + 1, after, 1, poses.back(), covariances.back());
   filler.MoveTo(segment);
   progress(1.0);
 }

@@ -27,6 +27,16 @@ std::vector<Segment> CutSegments(const FrameHandler& handler) {
   return segments;
 }
 
+/// How the refinement of a segment has moved its last frame that has had a pose before and after, in the world.
+SE3 MoveOfEnd(const std::vector<int>& old_frames, const std::vector<SE3>& old_poses, const Segment& segment) {
+  for (std::size_t old = old_frames.size(); old-- > 0;) {
+    const auto at = std::ranges::lower_bound(segment.frames, old_frames[old]);
+    if (at == segment.frames.end() || *at != old_frames[old]) continue;
+    return segment.T_cam_world[static_cast<std::size_t>(at - segment.frames.begin())].Inverse() * old_poses[old];
+  }
+  return {};
+}
+
 /// Refines every segment and carries each change of a segment's end on to those after it.
 void RefineSegments(const FinalRefinementOptions& options, const std::vector<Frame>& frames,
                     const std::function<void(double)>& progress, ThreadPool* pool, std::vector<Segment>* segments) {
@@ -37,15 +47,13 @@ void RefineSegments(const FinalRefinementOptions& options, const std::vector<Fra
     Segment& segment = (*segments)[i];
     for (SE3& pose : segment.T_cam_world) pose = pose * T_new_old.Inverse();
     for (Point& point : segment.points) point.position = T_new_old * point.position;
-    const SE3 old_end = segment.T_cam_world.back();
-    const int end = segment.frames.back();
+    const std::vector<int> old_frames = segment.frames;
+    const std::vector<SE3> old_poses = segment.T_cam_world;
     const int after = i + 1 < segments->size() ? (*segments)[i + 1].frames.front() : static_cast<int>(frames.size());
     RefineSegment(
         options, frames, before, after, [&](double share) { progress((static_cast<double>(i) + share) / count); }, pool,
         &segment);
-    const auto at_end = std::ranges::lower_bound(segment.frames, end);
-    const SE3& new_end = segment.T_cam_world[static_cast<std::size_t>(at_end - segment.frames.begin())];
-    T_new_old = new_end.Inverse() * old_end * T_new_old;
+    T_new_old = MoveOfEnd(old_frames, old_poses, segment) * T_new_old;
     before = segment.frames.back() + 1;
   }
 }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "evo/odometry/block_skyline.hpp"
+#include "evo/odometry/pose_uncertainty.hpp"
 
 namespace evo {
 namespace {
@@ -192,7 +193,7 @@ double NormalizedError(double noise_px, double drift_px, double expected_drift, 
   LetTracksDrift(drift_px, seed, &problem);
   const BundleOptions options{.iterations = 30, .loss_px = 1.0, .drift = expected_drift};
   AdjustBundle(options, &problem);
-  const auto covariances = PoseCovariances(options, problem);
+  const auto covariances = PoseUncertainty(options, problem).Covariances(0);
   EXPECT_EQ(covariances.front().norm(), 0.0) << "it is fixed";
   double sum = 0.0;
   for (std::size_t i = 2; i < truth.T_cam_world.size(); ++i) {
@@ -221,6 +222,41 @@ TEST(BundleAdjuster, CovariancesAreHonest) {
   }
 }
 
+TEST(BundleAdjuster, CovariancesAreRelativeToAnyPose) {
+  auto problem = Drive(40, 500, 0.3, 1);
+  problem.fixed_frames = 2;
+  AdjustBundle({}, &problem);
+  const PoseUncertainty uncertainty({}, problem);
+  const auto from_first = uncertainty.Covariances(0);
+  const auto from_last = uncertainty.Covariances(39);
+  EXPECT_LT(from_last[39].norm(), 1e-12);
+  // The turn between two poses does not depend on where it is seen from.
+  EXPECT_NEAR(std::sqrt(from_first[39].bottomRightCorner<3, 3>().trace()), uncertainty.Turn(0, 39), 1e-9);
+  EXPECT_NEAR(std::sqrt(from_last[0].bottomRightCorner<3, 3>().trace()), uncertainty.Turn(0, 39), 1e-9);
+}
+
+TEST(BundleAdjuster, EndsOfFewBadTracksAreNotCertain) {
+  auto problem = Drive(200, 4000, 0.3, 2);
+  const auto stretch = [&] {
+    problem.fixed_frames = 2;
+    AdjustBundle({}, &problem);
+    return PoseUncertainty({}, problem).CertainStretch();
+  };
+  EXPECT_EQ(stretch(), std::pair(std::size_t{0}, std::size_t{200}));
+  const auto at_an_end = [](const BundleObservation& o) { return o.frame < 8 || o.frame >= 190; };
+  std::erase_if(problem.observations, [&](const auto& o) { return at_an_end(o) && o.point % 10 != 0; });
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal(0.0, 2.0 / 226.0);
+  for (auto& o : problem.observations) {
+    if (at_an_end(o)) o.x += Eigen::Vector2d(normal(random), normal(random));
+  }
+  const auto [begin, end] = stretch();
+  EXPECT_GE(begin, 3u);
+  EXPECT_LE(begin, 12u);
+  EXPECT_LE(end, 197u);
+  EXPECT_GE(end, 185u);
+}
+
 /// The points in the order in which they come into view, as in a run: only so can threads share the work.
 BundleProblem InOrderOfFrames(BundleProblem problem) {
   std::ranges::stable_sort(problem.observations, {}, [&](const BundleObservation& observation) {
@@ -244,12 +280,12 @@ TEST(BundleAdjuster, ThreadsChangeNothing) {
   const BundleOptions options{.iterations = 4, .drift = 0.1};
   auto alone = start;
   AdjustBundle(options, &alone);
-  const auto alone_covariances = PoseCovariances(options, alone);
+  const auto alone_covariances = PoseUncertainty(options, alone).Covariances(0);
   for (const int threads : {1, 2, 4}) {
     ThreadPool pool(threads);
     auto together = start;
     AdjustBundle(options, &together, &pool);
-    const auto covariances = PoseCovariances(options, together, &pool);
+    const auto covariances = PoseUncertainty(options, together, &pool).Covariances(0);
     for (std::size_t i = 0; i < alone.T_cam_world.size(); ++i) {
       EXPECT_EQ(alone.T_cam_world[i].Matrix(), together.T_cam_world[i].Matrix()) << threads << " " << i;
       EXPECT_EQ(alone_covariances[i], covariances[i]) << threads << " " << i;

@@ -19,8 +19,8 @@ TEST(MotionPrior, AConstantVelocityCostsNothing) {
   std::mt19937 random(1);
   const Vector6d velocity = Twist(&random, 5.0, 1.0);
   const SE3 here = SE3::Exp(Twist(&random, 3.0, 1.0));
-  const Vector6d change = MeasureVelocityChange(SE3::Exp(-0.02 * velocity) * here, here,
-                                                SE3::Exp(0.05 * velocity) * here, 0.02, 0.05);
+  const Vector6d change =
+      MeasureVelocityChange(SE3::Exp(-0.02 * velocity) * here, here, SE3::Exp(0.05 * velocity) * here, 0.02, 0.05);
   EXPECT_LT(change.norm(), 1e-9);
 }
 

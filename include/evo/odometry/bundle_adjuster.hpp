@@ -61,14 +61,6 @@ bool Linearize(const SE3& T_cam_anchor, const Eigen::Vector3d& inverse_depth, co
 /// it all.
 BundleSummary AdjustBundle(const BundleOptions& options, BundleProblem* problem, ThreadPool* pool = nullptr);
 
-/// Covariances of the poses' left twists (translation, rotation) at a minimum that AdjustBundle has found with the same
-/// options, from what is left of the errors: H^-1 (sum over tracks of g g^T) H^-1, H the reduced system and g one
-/// track's part of its gradient. So whatever the errors of one track have in common counts, and only the tracks have to
-/// be independent (a sandwich estimator with clusters; K.-Y. Liang, S. L. Zeger, Biometrika 1986). The sum is taken by
-/// random signs of the tracks. Zero for poses that are fixed; empty if the system is singular.
-std::vector<Eigen::Matrix<double, 6, 6>> PoseCovariances(const BundleOptions& options, const BundleProblem& problem,
-                                                         ThreadPool* pool = nullptr);
-
 /// Where a point of the problem is in the world; infinite for rho = 0.
 Eigen::Vector3d WorldPosition(const BundleProblem& problem, const BundlePoint& point);
 
