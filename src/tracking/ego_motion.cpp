@@ -91,14 +91,20 @@ void EgoMotion::Orient(const std::vector<FlowSample>& features, const std::vecto
   if (departing + nearing < kFewestFeatures / 2) known_ = false;  // it stands, or only turns
 }
 
+double EgoMotion::InverseDepth(const FlowSample& feature) const {
+  if (!known_) return 0.0;
+  const PixelGeometry pixel = lens_.At(feature.position);
+  const Eigen::Vector2d away = motion_.Away(pixel);
+  const Eigen::Vector2d flow = motion_.WithoutTurn(pixel, feature.flow);
+  return std::max(0.0, away.dot(flow)) / (away.squaredNorm() + kNearPx * kNearPx);
+}
+
 PatchFlow EgoMotion::At(const FlowSample& feature, const Eigen::Vector2d& slope) const {
   if (!known_) return {};
   const PixelGeometry pixel = lens_.At(feature.position);
   const Eigen::Vector2d away = motion_.Away(pixel);
-  const Eigen::Vector2d flow = motion_.WithoutTurn(pixel, feature.flow);
-  const double inverse_depth = std::max(0.0, away.dot(flow)) / (away.squaredNorm() + kNearPx * kNearPx);
+  const double inverse_depth = InverseDepth(feature);
   PatchFlow patch;
-  patch.acceleration = 2.0 * inverse_depth * motion_.direction.z() * flow;
   constexpr double kStep = 2.0 * LensGrid::kSpacingPx;
   for (int axis = 0; axis < 2; ++axis) {
     const Eigen::Vector2d step = kStep * Eigen::Vector2d::Unit(axis);
@@ -110,6 +116,9 @@ PatchFlow EgoMotion::At(const FlowSample& feature, const Eigen::Vector2d& slope)
     patch.rate.col(axis) = (plane_flow(there, step) - plane_flow(back, -step)) / (2.0 * kStep);
   }
   patch.bend = motion_.direction.z() * slope;
+  // The flow changes as the point moves through the image, where the lens has its say, and as it comes nearer.
+  patch.acceleration = (patch.rate - away * slope.transpose()) * feature.flow +
+                       inverse_depth * inverse_depth * motion_.direction.z() * away;
   return patch;
 }
 

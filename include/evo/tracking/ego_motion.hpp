@@ -32,6 +32,12 @@ class EgoMotion {
   const Eigen::Vector3d& direction() const { return motion_.direction; }
   const Eigen::Vector3d& turn_rate() const { return motion_.turn_rate; }  ///< of the world about the camera, rad/s
 
+  /// Of a point with this flow; 0 while the motion is not known.
+  double InverseDepth(const FlowSample& feature) const;
+  /// The same point's inverse depth `step_s` later.
+  double Advanced(double inverse_depth, double step_s) const {
+    return inverse_depth * (1.0 + step_s * inverse_depth * motion_.direction.z());
+  }
   /// Of a plane whose inverse depth has the gradient `slope`, 1/(px s), where a feature has this flow.
   PatchFlow At(const FlowSample& feature, const Eigen::Vector2d& slope) const;
   /// Whether a resting point may move like this while the camera does; true while the motion is not known.
