@@ -42,8 +42,9 @@ void FeatureTracker::Process(const EventHistory& history, TimeNs t) {
     features_.erase(features_.begin() + static_cast<std::ptrdiff_t>(kept), features_.end());
   }
   if (options_.ego_motion) {
-    ego_motion_.Update(Flows());
-    LearnDepths(last_ ? ToSeconds(t - *last_) : 0.0);
+    const double step_s = last_ ? ToSeconds(t - *last_) : 0.0;
+    ego_motion_.Update(Flows(), step_s);
+    LearnDepths(step_s);
   }
   last_ = t;
   detected_ = refill_.IsDue(features_.size());
@@ -80,13 +81,14 @@ bool FeatureTracker::Track(const EventHistory& history, TimeNs t, TrackedFeature
 
 PatchMotion FeatureTracker::Predict(const TrackedFeature& feature, double step_s, Eigen::Vector2d* position) const {
   const PatchFlow patch = ego_motion_.At({feature.position, feature.flow}, feature.slope);
+  const Eigen::Vector2d flow = ego_motion_.AtRest({feature.position, feature.flow});
   PatchMotion motion;
-  motion.flow = feature.flow + step_s * patch.acceleration;
+  motion.flow = flow + step_s * patch.acceleration;
   motion.linear = (Eigen::Matrix2d::Identity() + step_s * patch.rate) * feature.linear;
   motion.perspective = feature.perspective - step_s * feature.linear.transpose() * patch.bend;
   motion.rate = patch.rate;
   motion.bend = patch.bend;
-  *position = feature.position + 0.5 * step_s * (feature.flow + motion.flow);
+  *position = feature.position + 0.5 * step_s * (flow + motion.flow);
   return motion;
 }
 
