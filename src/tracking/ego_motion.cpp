@@ -1,6 +1,7 @@
 #include "evo/tracking/ego_motion.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -10,27 +11,48 @@ namespace {
 
 constexpr std::size_t kFewestFeatures = 12;
 constexpr int kIterations = 6;
-constexpr double kUsualError = 0.03;       // of a flow, as a share of it,
-constexpr double kSmallestErrorPxS = 2.0;  // and besides
-constexpr double kLargestError = 0.2;      // of the flow of a resting point, as a share of it,
-constexpr double kLargestErrorPxS = 15.0;  // and besides
-constexpr double kLargestCost = 0.5;       // of a motion that explains the flows: mean of the robust loss, at most 1
-constexpr double kGoodCost = 0.2;          // beyond this another minimum is looked for
-constexpr double kNearPx = 10.0;           // closer to where the camera heads than this, slopes are not seen
+constexpr int kFilterIterations = 2;        // from what the flows alone say to the filtered motion
+constexpr double kDirectionDrift = 0.014;   // of the motion, rad in a second; grows with the root of time
+constexpr double kTurnDrift = 0.2;          // the same, of the turn rate, rad/s
+constexpr double kAlike = 3.0;              // flows err alike: they tell so much less than if each erred by itself
+constexpr double kShortestStepS = 1e-3;     // of the filter
+constexpr double kMostTurned = 0.9;         // cosine of the turn of the direction that is not a new motion
+constexpr double kUsualError = 0.03;        // of a flow, as a share of it,
+constexpr double kSmallestErrorPxS = 2.0;   // and besides
+constexpr double kLargestError = 0.2;       // of the flow of a resting point, as a share of it,
+constexpr double kLargestErrorPxS = 15.0;   // and besides
+constexpr double kLargestCost = 0.5;        // of a motion that explains the flows: mean of the robust loss, at most 1
+constexpr double kGoodCost = 0.2;           // beyond this another minimum is looked for
+constexpr double kCorrected = 0.7;          // share of a flow's error that is corrected, as the motion has errors too,
+constexpr double kLargestCorrection = 4.0;  // if it is a few of its usual errors: else the point does not rest
+constexpr double kNearPx = 10.0;            // closer to where the camera heads than this, slopes are not seen
 
 using Matrix5d = Eigen::Matrix<double, 5, 5>;
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Vectors = Eigen::Matrix<double, 6, 5>;  // direction and turn rate, by a step of the motion
+
+Vectors VectorsByStep(const CameraMotion::Tangents& tangents) {
+  Vectors vectors = Vectors::Zero();
+  vectors.topLeftCorner<3, 2>() = tangents;
+  vectors.bottomRightCorner<3, 3>().setIdentity();
+  return vectors;
+}
 
 double UsualError(const Eigen::Vector2d& flow) { return kSmallestErrorPxS + kUsualError * flow.norm(); }
 
 }  // namespace
 
-double EgoMotion::Refine(const std::vector<FlowSample>& features, const std::vector<PixelGeometry>& pixels) {
+double EgoMotion::Refine(const std::vector<FlowSample>& features, const std::vector<PixelGeometry>& pixels,
+                         const Expectation& expected, int iterations) {
   double cost = 1.0;
-  for (int iteration = 0; iteration <= kIterations; ++iteration) {
-    Matrix5d normal = 1e-9 * Matrix5d::Identity();
-    CameraMotion::Step right = CameraMotion::Step::Zero();
-    cost = 0.0;
+  for (int iteration = 0; iteration <= iterations; ++iteration) {
     const CameraMotion::Tangents tangents = motion_.DirectionTangents();
+    const Vectors by_step = VectorsByStep(tangents);
+    Vector6d unexpected;
+    unexpected << motion_.direction - expected.motion.direction, motion_.turn_rate - expected.motion.turn_rate;
+    Matrix5d normal = 1e-9 * Matrix5d::Identity() + by_step.transpose() * expected.information * by_step;
+    CameraMotion::Step right = -by_step.transpose() * (expected.information * unexpected);
+    cost = 0.0;
     for (std::size_t i = 0; i < features.size(); ++i) {
       if (!pixels[i].known()) continue;
       const FlowResidual left = ResidualOf(features[i].flow, pixels[i], motion_, tangents, 1e-3 * lens_.focal_px());
@@ -42,7 +64,10 @@ double EgoMotion::Refine(const std::vector<FlowSample>& features, const std::vec
       normal += weight * row * row.transpose();
       right -= weight * residual * row;
     }
-    if (iteration == kIterations) break;
+    if (iteration == iterations) {
+      covariance_ = kAlike * by_step * normal.inverse() * by_step.transpose();
+      break;
+    }
     normal.diagonal().head<2>().array() += 1e-3 * std::max(normal(0, 0), normal(1, 1)) + 1e-6;
     const CameraMotion::Step step = normal.ldlt().solve(right);
     if (!step.allFinite()) return 1.0;
@@ -51,8 +76,10 @@ double EgoMotion::Refine(const std::vector<FlowSample>& features, const std::vec
   return cost;
 }
 
-void EgoMotion::Update(const std::vector<FlowSample>& features) {
+void EgoMotion::Update(const std::vector<FlowSample>& features, double step_s) {
   const bool was_known = known_;
+  const CameraMotion before = motion_;
+  const Matrix6d covariance_before = covariance_;
   known_ = false;
   if (features.size() < kFewestFeatures) return;
   std::vector<PixelGeometry> pixels;
@@ -65,7 +92,7 @@ void EgoMotion::Update(const std::vector<FlowSample>& features) {
   CameraMotion best{starts[0], turn_rate};
   for (const auto& start : starts) {
     motion_ = {start, turn_rate};
-    const double cost = Refine(features, pixels);
+    const double cost = Refine(features, pixels, {}, kIterations);
     if (cost < best_cost) {
       best_cost = cost;
       best = motion_;
@@ -75,6 +102,27 @@ void EgoMotion::Update(const std::vector<FlowSample>& features) {
   }
   motion_ = best;
   Orient(features, pixels);
+  if (!known_) return;
+  Expectation expected;
+  if (was_known && before.direction.dot(motion_.direction) > kMostTurned) {
+    Vector6d drift;
+    drift << Eigen::Vector3d::Constant(kDirectionDrift), Eigen::Vector3d::Constant(kTurnDrift);
+    Matrix6d covariance = covariance_before;
+    covariance.diagonal() += std::max(step_s, kShortestStepS) * drift.cwiseAbs2();
+    expected = {before, kAlike * covariance.inverse()};
+  }
+  Refine(features, pixels, expected, kFilterIterations);
+}
+
+Eigen::Vector2d EgoMotion::AtRest(const FlowSample& feature) const {
+  if (!known_) return feature.flow;
+  const PixelGeometry pixel = lens_.At(feature.position);
+  const Eigen::Vector2d away = motion_.Away(pixel);
+  const Eigen::Vector2d normal(-away.y(), away.x());
+  const Eigen::Vector2d across =
+      normal.dot(motion_.WithoutTurn(pixel, feature.flow)) / std::max(away.squaredNorm(), kNearPx * kNearPx) * normal;
+  const double most = kLargestCorrection * UsualError(feature.flow);
+  return feature.flow - kCorrected / (1.0 + across.squaredNorm() / (most * most)) * across;
 }
 
 void EgoMotion::Orient(const std::vector<FlowSample>& features, const std::vector<PixelGeometry>& pixels) {
@@ -91,14 +139,20 @@ void EgoMotion::Orient(const std::vector<FlowSample>& features, const std::vecto
   if (departing + nearing < kFewestFeatures / 2) known_ = false;  // it stands, or only turns
 }
 
+double EgoMotion::InverseDepth(const FlowSample& feature) const {
+  if (!known_) return 0.0;
+  const PixelGeometry pixel = lens_.At(feature.position);
+  const Eigen::Vector2d away = motion_.Away(pixel);
+  const Eigen::Vector2d flow = motion_.WithoutTurn(pixel, feature.flow);
+  return std::max(0.0, away.dot(flow)) / (away.squaredNorm() + kNearPx * kNearPx);
+}
+
 PatchFlow EgoMotion::At(const FlowSample& feature, const Eigen::Vector2d& slope) const {
   if (!known_) return {};
   const PixelGeometry pixel = lens_.At(feature.position);
   const Eigen::Vector2d away = motion_.Away(pixel);
-  const Eigen::Vector2d flow = motion_.WithoutTurn(pixel, feature.flow);
-  const double inverse_depth = std::max(0.0, away.dot(flow)) / (away.squaredNorm() + kNearPx * kNearPx);
+  const double inverse_depth = InverseDepth(feature);
   PatchFlow patch;
-  patch.acceleration = 2.0 * inverse_depth * motion_.direction.z() * flow;
   constexpr double kStep = 2.0 * LensGrid::kSpacingPx;
   for (int axis = 0; axis < 2; ++axis) {
     const Eigen::Vector2d step = kStep * Eigen::Vector2d::Unit(axis);
@@ -110,6 +164,9 @@ PatchFlow EgoMotion::At(const FlowSample& feature, const Eigen::Vector2d& slope)
     patch.rate.col(axis) = (plane_flow(there, step) - plane_flow(back, -step)) / (2.0 * kStep);
   }
   patch.bend = motion_.direction.z() * slope;
+  // The flow changes as the point moves through the image, where the lens has its say, and as it comes nearer.
+  patch.acceleration = (patch.rate - away * slope.transpose()) * feature.flow +
+                       inverse_depth * inverse_depth * motion_.direction.z() * away;
   return patch;
 }
 

@@ -9,9 +9,8 @@ namespace evo {
 
 namespace {
 
-constexpr int kTemplateMarginPx = 4;   // the template is larger than the patch, for events that stick out
-constexpr double kCandidates = 1.5;    // corners tried for each feature that is missing: many are no features
-constexpr double kNeighbourPx = 30.0;  // features this near probably lie on the same surface
+constexpr int kTemplateMarginPx = 4;  // the template is larger than the patch, for events that stick out
+constexpr double kCandidates = 1.5;   // corners tried for each feature that is missing: many are no features
 // Of the density that is asked for information; fixed, so that the same number means the same for all options.
 constexpr double kInformationSigmaPx = 1.0;
 constexpr double kInformationOutlierShare = 0.2;
@@ -38,7 +37,8 @@ void FeatureTracker::Refill(const EventHistory& history, TimeNs t) {
   const auto candidates = static_cast<int>(kCandidates * static_cast<double>(missing));
   const auto corners = DetectCorners(image, taken, candidates, fewest_events, options_, pool_);
   std::vector<std::optional<TrackedFeature>> born(corners.size());
-  pool_->ForEach(corners.size(), [&](std::size_t i) { born[i] = Birth(history, t, corners[i]); });
+  const std::vector<DepthSample> depths = Depths();
+  pool_->ForEach(corners.size(), [&](std::size_t i) { born[i] = Birth(history, t, corners[i], depths); });
   std::vector<TrackedFeature> fit;
   for (auto& feature : born) {
     if (feature) fit.push_back(std::move(*feature));
@@ -61,7 +61,8 @@ void FeatureTracker::LearnUsualInformation(const std::vector<TrackedFeature>& bo
 }
 
 std::optional<TrackedFeature> FeatureTracker::Birth(const EventHistory& history, TimeNs t,
-                                                    const Eigen::Vector2d& position) const {
+                                                    const Eigen::Vector2d& position,
+                                                    const std::vector<DepthSample>& depths) const {
   Eigen::Vector2d flow = flow_field_.At(position.x(), position.y());
   if (!EstimateFlow(history, t, position.x(), position.y(), options_, &flow)) return std::nullopt;
   if (!ego_motion_.Allows({position, flow})) return std::nullopt;
@@ -71,9 +72,11 @@ std::optional<TrackedFeature> FeatureTracker::Birth(const EventHistory& history,
       {t, position.x(), position.y(), flow.x(), flow.y(), static_cast<double>(options_.patch_radius_px), half_window},
       &events);
   if (events.size() < static_cast<std::size_t>(options_.fewest_events)) return std::nullopt;
+  const double inverse_depth = ego_motion_.InverseDepth({position, flow});
   TrackedFeature feature{.position = position,
                          .flow = flow,
-                         .slope = NeighbouringSlope(position),
+                         .inverse_depth = inverse_depth,
+                         .slope = SurfaceSlope(depths, {position, inverse_depth}).value_or(Eigen::Vector2d::Zero()),
                          .events = DensityMap(options_.patch_radius_px + kTemplateMarginPx, planes()),
                          .half_window = half_window};
   const PatchFlow patch = ego_motion_.At({position, flow}, feature.slope);
@@ -86,17 +89,6 @@ std::optional<TrackedFeature> FeatureTracker::Birth(const EventHistory& history,
   feature.information = SmallestInformation(feature.events);
   feature.events.Scale(static_cast<float>(1.0 / feature.events.Total()));
   return feature;
-}
-
-Eigen::Vector2d FeatureTracker::NeighbouringSlope(const Eigen::Vector2d& position) const {
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  int count = 0;
-  for (const auto& other : features_) {
-    if ((other.position - position).norm() > kNeighbourPx) continue;
-    sum += other.slope;
-    ++count;
-  }
-  return sum / std::max(count, 1);
 }
 
 }  // namespace evo

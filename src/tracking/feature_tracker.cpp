@@ -12,6 +12,7 @@ constexpr int kCoarseIterations = 6;
 constexpr int kNewbornFrames = 5;      // until then a feature has to prove itself
 constexpr double kSlowdown = 0.9;      // of a feature without events, from frame to frame
 constexpr double kSlopeGain = 0.1;     // share of what one frame tells about the slope of a feature's plane
+constexpr double kDepthGain = 0.25;    // and about its depth
 constexpr double kSteepest = 1e-3;     // such a slope for a flow of 1 px/s, 1/px^2
 constexpr double kRebaseScale = 1.25;  // re-sample the template when the patch has grown or shrunk this much,
 constexpr double kRebaseBend = 0.25;   // or its depth varies by this share from its centre to its edge
@@ -40,7 +41,11 @@ void FeatureTracker::Process(const EventHistory& history, TimeNs t) {
     }
     features_.erase(features_.begin() + static_cast<std::ptrdiff_t>(kept), features_.end());
   }
-  if (options_.ego_motion) ego_motion_.Update(Flows());
+  if (options_.ego_motion) {
+    const double step_s = last_ ? ToSeconds(t - *last_) : 0.0;
+    ego_motion_.Update(Flows(), step_s);
+    LearnDepths(step_s);
+  }
   last_ = t;
   detected_ = refill_.IsDue(features_.size());
   if (detected_) Refill(history, t);
@@ -76,13 +81,14 @@ bool FeatureTracker::Track(const EventHistory& history, TimeNs t, TrackedFeature
 
 PatchMotion FeatureTracker::Predict(const TrackedFeature& feature, double step_s, Eigen::Vector2d* position) const {
   const PatchFlow patch = ego_motion_.At({feature.position, feature.flow}, feature.slope);
+  const Eigen::Vector2d flow = ego_motion_.AtRest({feature.position, feature.flow});
   PatchMotion motion;
-  motion.flow = feature.flow + step_s * patch.acceleration;
+  motion.flow = flow + step_s * patch.acceleration;
   motion.linear = (Eigen::Matrix2d::Identity() + step_s * patch.rate) * feature.linear;
   motion.perspective = feature.perspective - step_s * feature.linear.transpose() * patch.bend;
   motion.rate = patch.rate;
   motion.bend = patch.bend;
-  *position = feature.position + 0.5 * step_s * (feature.flow + motion.flow);
+  *position = feature.position + 0.5 * step_s * (flow + motion.flow);
   return motion;
 }
 
@@ -131,6 +137,30 @@ bool FeatureTracker::Rest(const PatchMotion& predicted, const Eigen::Vector2d& p
   feature->linear = predicted.linear;
   feature->perspective = predicted.perspective;
   return true;
+}
+
+void FeatureTracker::LearnDepths(double step_s) {
+  if (!ego_motion_.known()) return;
+  for (auto& feature : features_) {
+    const double seen = ego_motion_.InverseDepth({feature.position, feature.flow});
+    const double expected = ego_motion_.Advanced(feature.inverse_depth, step_s);
+    const bool known = feature.inverse_depth > 0.0;
+    feature.inverse_depth = known ? expected + std::max(kDepthGain, 1.0 / feature.frames) * (seen - expected) : seen;
+  }
+  const std::vector<DepthSample> depths = Depths();
+  pool_->ForEach(
+      features_.size(),
+      [&](std::size_t i) {
+        const auto slope = SurfaceSlope(depths, depths[i]);
+        if (slope) features_[i].slope = *slope;
+      },
+      4);
+}
+
+std::vector<DepthSample> FeatureTracker::Depths() const {
+  std::vector<DepthSample> depths;
+  for (const auto& feature : features_) depths.push_back({feature.position, feature.inverse_depth});
+  return depths;
 }
 
 void FeatureTracker::LearnSlope(const Eigen::Matrix2d& unexpected_rate, TrackedFeature* feature) const {

@@ -25,13 +25,23 @@ class EgoMotion {
  public:
   explicit EgoMotion(const Camera& camera) : lens_(camera) {}
 
-  /// Finds the motion from the flows of features, by iteratively reweighted Gauss-Newton from the last motion on.
-  void Update(const std::vector<FlowSample>& features);
+  /// Finds the motion from the flows of features `step_s` after the last, by iteratively reweighted Gauss-Newton from
+  /// the last motion on. Where it goes on, it is filtered: it changes little in so short a time.
+  void Update(const std::vector<FlowSample>& features, double step_s);
   /// Whether the flows determined a motion with a direction.
   bool known() const { return known_; }
   const Eigen::Vector3d& direction() const { return motion_.direction; }
   const Eigen::Vector3d& turn_rate() const { return motion_.turn_rate; }  ///< of the world about the camera, rad/s
 
+  /// Of a point with this flow; 0 while the motion is not known.
+  double InverseDepth(const FlowSample& feature) const;
+  /// The same point's inverse depth `step_s` later.
+  double Advanced(double inverse_depth, double step_s) const {
+    return inverse_depth * (1.0 + step_s * inverse_depth * motion_.direction.z());
+  }
+  /// The feature's flow with less of its error across the line along which the camera's translation moves a resting
+  /// point; what is too large for an error is left, since then the point does not rest.
+  Eigen::Vector2d AtRest(const FlowSample& feature) const;
   /// Of a plane whose inverse depth has the gradient `slope`, 1/(px s), where a feature has this flow.
   PatchFlow At(const FlowSample& feature, const Eigen::Vector2d& slope) const;
   /// Whether a resting point may move like this while the camera does; true while the motion is not known.
@@ -40,8 +50,17 @@ class EgoMotion {
   Eigen::Vector2d SlopeOf(const Eigen::Vector2d& position, const Eigen::Matrix2d& rate) const;
 
  private:
+  using Matrix6d = Eigen::Matrix<double, 6, 6>;  ///< over direction and turn rate
+
+  /// What the motion before says.
+  struct Expectation {
+    CameraMotion motion;
+    Matrix6d information = Matrix6d::Zero();  ///< in what a flow tells
+  };
+
   /// Returns the mean of the robust loss that is left, from 0 to 1.
-  double Refine(const std::vector<FlowSample>& features, const std::vector<PixelGeometry>& pixels);
+  double Refine(const std::vector<FlowSample>& features, const std::vector<PixelGeometry>& pixels,
+                const Expectation& expected, int iterations);
 
   /// Chooses the sign of the direction, or says that there is none.
   void Orient(const std::vector<FlowSample>& features, const std::vector<PixelGeometry>& pixels);
@@ -49,6 +68,7 @@ class EgoMotion {
   LensGrid lens_;
   bool known_ = false;
   CameraMotion motion_;
+  Matrix6d covariance_ = Matrix6d::Zero();
 };
 
 }  // namespace evo

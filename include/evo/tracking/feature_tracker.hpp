@@ -11,6 +11,7 @@
 #include "evo/tracking/ego_motion.hpp"
 #include "evo/tracking/em_affine.hpp"
 #include "evo/tracking/flow_field.hpp"
+#include "evo/tracking/surface_slope.hpp"
 #include "evo/tracking/tracker.hpp"
 
 namespace evo {
@@ -22,6 +23,7 @@ struct TrackedFeature {
   Eigen::Vector2d flow;                                   ///< px/s
   Eigen::Matrix2d linear = Eigen::Matrix2d::Identity();   ///< template to sensor
   Eigen::Vector2d perspective = Eigen::Vector2d::Zero();  ///< of the same, see PatchMotion
+  double inverse_depth = 0.0;                             ///< mean over the last frames, see EgoMotion
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();        ///< of its plane, see EgoMotion::At
   double scale = 1.0;                                     ///< of the patch against its first window
   DensityMap events;                                      ///< the template
@@ -55,6 +57,9 @@ class FeatureTracker : public Tracker {
   bool Rest(const PatchMotion& predicted, const Eigen::Vector2d& position, TrackedFeature* feature) const;
   /// Aligns `events` to the feature's template from `motion`; false if they do not fit it.
   bool Fit(const LocalEvents& events, const TrackedFeature& feature, bool coarse_first, PatchMotion* motion) const;
+  /// Of all features, and from them the slopes of the planes that they lie on.
+  void LearnDepths(double step_s);
+  std::vector<DepthSample> Depths() const;
   /// `unexpected_rate`: by how much the patch changed faster than its plane's slope made expect, 1/s.
   void LearnSlope(const Eigen::Matrix2d& unexpected_rate, TrackedFeature* feature) const;
   void UpdateTemplate(const LocalEvents& events, const PatchMotion& motion, TrackedFeature* feature) const;
@@ -62,8 +67,8 @@ class FeatureTracker : public Tracker {
   // In feature_birth.cpp.
   void Refill(const EventHistory& history, TimeNs t);
   void LearnUsualInformation(const std::vector<TrackedFeature>& born);
-  std::optional<TrackedFeature> Birth(const EventHistory& history, TimeNs t, const Eigen::Vector2d& position) const;
-  Eigen::Vector2d NeighbouringSlope(const Eigen::Vector2d& position) const;
+  std::optional<TrackedFeature> Birth(const EventHistory& history, TimeNs t, const Eigen::Vector2d& position,
+                                      const std::vector<DepthSample>& depths) const;
   int planes() const { return options_.use_polarity ? 2 : 1; }
 
   TrackerOptions options_;

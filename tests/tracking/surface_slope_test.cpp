@@ -1,0 +1,53 @@
+#include "evo/tracking/surface_slope.hpp"
+
+#include <gtest/gtest.h>
+
+namespace evo {
+namespace {
+
+using Eigen::Vector2d;
+
+const DepthSample kCentre{{100.0, 200.0}, 2.0};
+const Vector2d kSlope(0.004, 0.03);
+
+double DepthOnPlane(const Vector2d& position) {
+  return kCentre.inverse_depth + kSlope.dot(position - kCentre.position);
+}
+
+/// On a grid around the centre and with it.
+std::vector<DepthSample> PlaneSamples() {
+  std::vector<DepthSample> samples;
+  for (int x = -2; x <= 2; ++x) {
+    for (int y = -2; y <= 2; ++y) {
+      const Vector2d position = kCentre.position + 22.0 * Vector2d(x, y);
+      samples.push_back({position, DepthOnPlane(position)});
+    }
+  }
+  return samples;
+}
+
+TEST(SurfaceSlope, IsThatOfThePlaneThroughTheSamples) {
+  const auto slope = SurfaceSlope(PlaneSamples(), kCentre);
+  ASSERT_TRUE(slope);
+  EXPECT_LT((*slope - kSlope).norm(), 0.05 * kSlope.norm());
+}
+
+TEST(SurfaceSlope, IgnoresOtherSurfacesAndUnknownDepths) {
+  auto samples = PlaneSamples();
+  for (std::size_t i = 0; i < samples.size(); i += 4) samples[i].inverse_depth = i % 8 ? 0.0 : 7.0;
+  const auto slope = SurfaceSlope(samples, kCentre);
+  ASSERT_TRUE(slope);
+  EXPECT_LT((*slope - kSlope).norm(), 0.1 * kSlope.norm());
+}
+
+TEST(SurfaceSlope, IsUnknownWhereTooFewAgree) {
+  EXPECT_FALSE(SurfaceSlope({}, kCentre));
+  EXPECT_FALSE(SurfaceSlope({kCentre}, kCentre));
+  EXPECT_FALSE(SurfaceSlope(PlaneSamples(), {kCentre.position, 0.0}));
+  auto samples = PlaneSamples();
+  for (auto& sample : samples) sample.position += Vector2d(300.0, 0.0);
+  EXPECT_FALSE(SurfaceSlope(samples, kCentre));
+}
+
+}  // namespace
+}  // namespace evo
