@@ -12,8 +12,8 @@ namespace {
 
 constexpr Eigen::Index kSamples = 100;
 constexpr std::size_t kReach = 25;      // poses between which a turn is compared with the usual
-constexpr double kUncertain = 3.0;       // times the usual standard deviation
-constexpr std::size_t kMostShare = 10;   // of the run: one in so many may be left out at either end
+constexpr double kUncertain = 3.0;      // times the usual standard deviation
+constexpr std::size_t kMostShare = 10;  // of the run: one in so many may be left out at either end
 
 /// Ad(T) in twists (translation, rotation): T Exp(d) = Exp(Ad(T) d) T.
 PoseUncertainty::Covariance Adjoint(const SE3& T) {
@@ -48,9 +48,8 @@ std::vector<PoseUncertainty::Covariance> PoseUncertainty::Covariances(std::size_
   std::vector<Covariance> covariances;
   const auto of_origin = samples_.middleRows<6>(6 * static_cast<Eigen::Index>(origin));
   for (std::size_t i = 0; i < poses_.size(); ++i) {
-    const Eigen::Matrix<double, 6, Eigen::Dynamic> relative =
-        samples_.middleRows<6>(6 * static_cast<Eigen::Index>(i)) -
-        Adjoint(poses_[i] * poses_[origin].Inverse()) * of_origin;
+    const Eigen::Matrix<double, 6, Eigen::Dynamic> relative = samples_.middleRows<6>(6 * static_cast<Eigen::Index>(i)) -
+                                                              Adjoint(poses_[i] * poses_[origin].Inverse()) * of_origin;
     covariances.emplace_back(relative * relative.transpose() / static_cast<double>(kSamples));
   }
   return covariances;

@@ -11,9 +11,10 @@
 namespace evo {
 
 /// How far the poses of an adjusted bundle may be off, from what is left of the errors: H^-1 (sum over tracks of g g^T)
-/// H^-1, H the reduced system and g one track's part of its gradient. So whatever the errors of one track have in common
-/// counts, and only the tracks have to be independent (a sandwich estimator with clusters; K.-Y. Liang, S. L. Zeger,
-/// Biometrika 1986). The sum is taken by random signs of the tracks, each of which gives one sample of all poses' errors.
+/// H^-1, H the reduced system and g one track's part of its gradient. So whatever the errors of one track have in
+/// common counts, and only the tracks have to be independent (a sandwich estimator with clusters; K.-Y. Liang, S. L.
+/// Zeger, Biometrika 1986). The sum is taken by random signs of the tracks, each of which gives one sample of all
+/// poses' errors.
 class PoseUncertainty {
  public:
   using Covariance = Eigen::Matrix<double, 6, 6>;
@@ -26,9 +27,9 @@ class PoseUncertainty {
   std::vector<Covariance> Covariances(std::size_t origin) const;
   /// Standard deviation of the camera's turn from one pose to another, rad.
   double Turn(std::size_t from, std::size_t to) const;
-  /// [begin, end) of the poses without those at either end, at most a tenth of all, whose turn towards the others is far
-  /// more uncertain than is usual within the run: a few tracks, just born or the last that are left, know little, and the
-  /// first pose turns the whole path.
+  /// [begin, end) of the poses without those at either end, at most a tenth of all, whose turn towards the others is
+  /// far more uncertain than is usual within the run: a few tracks, just born or the last that are left, know little,
+  /// and the first pose turns the whole path.
   std::pair<std::size_t, std::size_t> CertainStretch() const;
 
  private:
