@@ -13,12 +13,14 @@ ablation_scenes=(driving_day:60 bumps:3+8 driving_night:20+8)
 with_more_features=tracker.features=300
 # Each switches one ingredient off.
 ablations=(
+  odometry.ground.hold_height=false
+  odometry.final.motion=0
+  odometry.final.drift=0
   odometry.final_refinement=false
   odometry.window_refinement=false
   odometry.bootstrap.refine=false
   odometry.key_frame.every_frames=5
   odometry.depth_filter.old_key_frames=0
-  odometry.doubtful=1e6
   odometry.max_outliers=1000
   tracker.ego_motion=false
   tracker.restore_shake=false

@@ -13,7 +13,6 @@ namespace evo {
 
 namespace {
 
-constexpr double kScaleMemory = 0.95;       // of the running mean of the residuals
 constexpr double kPredictionSeconds = 0.5;  // a velocity older than this says nothing
 constexpr int kHighIndex = std::numeric_limits<int>::max();
 
@@ -21,8 +20,6 @@ constexpr int kHighIndex = std::numeric_limits<int>::max();
 
 void Register(Parameters& parameters, FrameHandlerOptions& options) {
   parameters.Add("odometry.lag", &options.lag, 1, 100, "frames after which a frame's depths enter the map");
-  parameters.Add("odometry.doubtful", &options.doubtful, 1, 1e6,
-                 "no depths from, and no key frame of, a frame whose residuals are this many times as large as usual");
   auto& key = options.key_frame;
   parameters.Add("odometry.key_frame.translation", &key.translation, 0.001, 10,
                  "translation since the last key frame over median depth");
@@ -127,13 +124,10 @@ bool FrameHandler::Track(int index) {
 
 void FrameHandler::Commit(int index, const Sighted& sighted, const PoseEstimate& estimate) {
   FrameMessage message;
-  message.hold = usual_scale_px_ > 0.0 && estimate.scale_px > options_.doubtful * usual_scale_px_;
-  usual_scale_px_ = usual_scale_px_ > 0.0 ? kScaleMemory * usual_scale_px_ + (1.0 - kScaleMemory) * estimate.scale_px
-                                          : estimate.scale_px;
   for (std::size_t i = 0; i < sighted.tracks.size(); ++i) {
     (estimate.inliers[i] ? message.inliers : message.outliers).push_back(sighted.tracks[i]);
   }
-  const bool key_frame = !message.hold && IsKeyFrame(index, estimate.T_cam_world, sighted);
+  const bool key_frame = IsKeyFrame(index, estimate.T_cam_world, sighted);
   Remember(index, estimate.T_cam_world, key_frame, estimate.inlier_count, &message);
   mapping_.Post(std::move(message));
 }
@@ -195,7 +189,6 @@ void FrameHandler::StartSegment(Bootstrap bootstrap) {
              static_cast<int>(Sight(frames_[index]).tracks.size()), &message);
     mapping_.Post(std::move(message));
   }
-  usual_scale_px_ = 0.0;
   tracking_ = true;
 }
 

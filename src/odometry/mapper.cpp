@@ -41,7 +41,7 @@ MapUpdate Mapper::Process(const FrameMessage& message) {
   frame.T_cam_world = message.reference < 0 ? message.T_cam_reference
                                             : message.T_cam_reference * map_.key_frames[message.reference].T_cam_world;
   Judge(message, &update);
-  if (!message.hold) MeasureDepths(frame);
+  MeasureDepths(frame);
   AddConverged(&update);
   if (message.key_frame) AddKeyFrame(frame, &update);
   return update;

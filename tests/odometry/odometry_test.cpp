@@ -100,16 +100,6 @@ TEST(Odometry, KeyFramesByRuleOrEverySoManyFrames) {
   EXPECT_NE(Estimate(drive).key_frames, regular.key_frames);
 }
 
-TEST(Odometry, ADoubtfulFrameIsNoKeyFrame) {
-  const Drive drive = MakeDrive({.seconds = 4.0, .stop = false, .bumps = false});
-  OdometryOptions options;
-  options.frame_handler.key_frame.every_frames = 1;
-  options.frame_handler.doubtful = 1e6;
-  const int all = Estimate(drive, options).key_frames;
-  options.frame_handler.doubtful = 1.0;
-  EXPECT_LT(Estimate(drive, options).key_frames, 0.8 * all);
-}
-
 TEST(Odometry, SameBytesForAnyNumberOfThreads) {
   const Drive drive = MakeDrive({.seconds = 5.0, .seed = 5});
   const auto one = Estimate(drive, {}, 1);

@@ -25,8 +25,7 @@ struct KeyFrameOptions {
 };
 
 struct FrameHandlerOptions {
-  int lag = 2;            ///< frames after which a frame's depths are in the map, whatever the number of threads
-  double doubtful = 2.0;  ///< residuals this many times their usual size: no depths are measured, no key frame
+  int lag = 2;  ///< frames after which a frame's depths are in the map, whatever the number of threads
   BootstrapOptions bootstrap;
   PoseOptions pose;
   KeyFrameOptions key_frame;
@@ -91,9 +90,8 @@ class FrameHandler {
   std::vector<int> bootstraps_;
   std::vector<int> losses_;
   bool tracking_ = false;
-  int last_ = -1;         // the last frame with a pose
-  int before_last_ = -1;  // the one before, in the same segment; -1 at its beginning
-  double usual_scale_px_ = 0.0;
+  int last_ = -1;          // the last frame with a pose
+  int before_last_ = -1;   // the one before, in the same segment; -1 at its beginning
   MappingThread mapping_;  // last: its thread ends before what it works on
 };
 

@@ -31,7 +31,6 @@ struct FrameMessage {
   int reference = -1;  ///< key frame that the pose is relative to; -1: the pose is in the world
   SE3 T_cam_reference;
   bool key_frame = false;    ///< becomes the next key frame, numbered from 0 without gaps
-  bool hold = false;         ///< the pose is doubtful: no depth is measured with it
   bool new_segment = false;  ///< the map starts anew with `points`
   std::vector<Point> points;
   std::vector<std::int64_t> inliers;   ///< tracks whose point agreed with the frame
