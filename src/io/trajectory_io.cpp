@@ -173,7 +173,7 @@ void WriteTum(const std::filesystem::path& path, const Trajectory& trajectory) {
 }
 
 void WritePoseCovariances(const std::filesystem::path& path, const Trajectory& trajectory,
-                          const std::vector<Eigen::Matrix<double, 6, 6>>& covariances) {
+                          const std::vector<Matrix6d>& covariances) {
   constexpr std::array kNames = {"x", "y", "z", "rx", "ry", "rz"};
   OutputFile file(path);
   file.stream() << "timestamp";

@@ -93,9 +93,7 @@ double MotionCost(const BundleProblem& problem, double loss_px) {
   const MotionPrior& motion = problem.motion;
   double cost = 0.0;
   for (std::size_t i = 1; i + 1 < motion.t.size(); ++i) {
-    const SE3* const poses = &problem.T_cam_world[i];
-    const Vector6d change = MeasureVelocityChange(poses[-1], poses[0], poses[1], motion.t[i] - motion.t[i - 1],
-                                                  motion.t[i + 1] - motion.t[i]);
+    const Vector6d change = MeasureVelocityChange(problem.T_cam_world, motion.t, i);
     cost += CauchyCost((motion.translation_px * change.head<3>()).squaredNorm(), loss_px) +
             CauchyCost((motion.rotation_px * change.tail<3>()).squaredNorm(), loss_px);
   }

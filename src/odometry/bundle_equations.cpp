@@ -127,9 +127,7 @@ void BundleEquations::LinearizeScale() {
 void BundleEquations::LinearizeMotion() {
   const MotionPrior& motion = problem_.motion;
   for (std::size_t i = 1; i + 1 < motion.t.size(); ++i) {
-    const SE3* const poses = &problem_.T_cam_world[i];
-    const VelocityChange change = LinearizeVelocityChange(poses[-1], poses[0], poses[1], motion.t[i] - motion.t[i - 1],
-                                                          motion.t[i + 1] - motion.t[i]);
+    const VelocityChange change = LinearizeVelocityChange(problem_.T_cam_world, motion.t, i);
     const std::array derivatives = {change.by_before, change.by_here, change.by_after};
     for (const auto& [rows, px] : {std::pair(0, motion.translation_px), std::pair(3, motion.rotation_px)}) {
       const Eigen::Vector3d error = px * change.value.segment<3>(rows);

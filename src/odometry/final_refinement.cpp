@@ -132,13 +132,11 @@ RefinedPoints TakePoints(const RunBundle& run, double drift, Segment* segment) {
 /// start from their neighbours, and the frames before and after the segment are taken in as far as they can be tracked.
 class PoseFiller {
  public:
-  using Covariance = Eigen::Matrix<double, 6, 6>;
-
   PoseFiller(const std::vector<Frame>& frames, const RefinedPoints& points) : frames_(frames), points_(points) {}
 
   /// From `frame` on in steps of `direction` up to but without `end`, while the poses can be estimated and are not far
   /// more uncertain than usual: the first pose, known by a few tracks just born, would turn the whole path.
-  void Extend(int frame, int end, int direction, SE3 start, const Covariance& of_start) {
+  void Extend(int frame, int end, int direction, SE3 start, const Matrix6d& of_start) {
     const double usual = Median(turns_);
     for (; frame != end; frame += direction) {
       if (!Estimate(frame, start, of_start)) return;
@@ -151,7 +149,7 @@ class PoseFiller {
   }
 
   /// `start` is the pose of a frame of the bundle nearby.
-  bool Estimate(int frame, const SE3& start, const Covariance& of_start) {
+  bool Estimate(int frame, const SE3& start, const Matrix6d& of_start) {
     const PoseEstimate estimate = points_.EstimatePose(frames_, frame, start);
     if (!points_.Accepts(estimate)) return false;
     // The points are as uncertain as the bundle's poses nearby.
@@ -160,7 +158,7 @@ class PoseFiller {
     return true;
   }
 
-  void Keep(int frame, const SE3& T_cam_world, const Covariance& covariance) {
+  void Keep(int frame, const SE3& T_cam_world, const Matrix6d& covariance) {
     const PoseEstimate estimate = points_.EstimatePose(frames_, frame, T_cam_world);
     poses_[frame] = {T_cam_world, estimate.inlier_count, covariance};
     if (estimate.inlier_count > 0) turns_.push_back(Turn(estimate));
@@ -183,7 +181,7 @@ class PoseFiller {
   struct Pose {
     SE3 T_cam_world;
     int inliers = 0;
-    Covariance covariance;
+    Matrix6d covariance;
   };
 
   /// How uncertain the camera's turn is if the points are known: standard deviation, rad.
@@ -227,13 +225,12 @@ void RefineSegment(const FinalRefinementOptions& options, const std::vector<Fram
   const RefinedPoints points = TakePoints(run, options.drift, segment);
   PoseFiller filler(frames, points);
   const auto& poses = run.bundle.T_cam_world;
+  const int end_frame = 1 + segment->frames[end == poses.size() ? segment->frames.size() - 1 : run.frames[end - 1]];
   for (std::size_t k = first; k < end; ++k) {
     const int frame = segment->frames[run.frames[k]];
     filler.Keep(frame, poses[k], covariances[k]);
-    const bool at_end = k + 1 == run.frames.size();
-    const int next = at_end ? segment->frames.back() + 1 : segment->frames[run.frames[k + 1]];
-    for (int between = frame + 1; between < next && (at_end || k + 1 < end); ++between)
-      filler.Estimate(between, poses[k], covariances[k]);
+    const int next = k + 1 < end ? segment->frames[run.frames[k + 1]] : end_frame;
+    for (int between = frame + 1; between < next; ++between) filler.Estimate(between, poses[k], covariances[k]);
   }
   if (first == 0) filler.Extend(segment->frames.front() - 1, before - 1, -1, poses.front(), covariances.front());
   if (end == poses.size()) filler.Extend(segment->frames.back() + 1, after, 1, poses.back(), covariances.back());

@@ -28,7 +28,7 @@ constexpr double kMostNoise = 2.0;
 constexpr std::array kGates = {0.3, 0.2, 0.15, 0.1, 0.07, 0.05, 0.03, 0.0, 0.0, 0.0};
 constexpr double kMostNodes = 1e5;  // whatever height garbage suggests
 constexpr std::size_t kFewestTracks = 20;
-constexpr double kStretch = 10.0;  // heights of way, on which most sightings have to agree
+constexpr std::size_t kStretch = 10;  // heights of way, on which most sightings have to agree
 constexpr double kSmallestShare = 0.5;
 constexpr double kSmallestAgreement = 0.9;  // share of the stretches
 constexpr double kCoveredError = 0.01;
@@ -214,12 +214,11 @@ class ProfileFitter {
 
   /// The share of the stretches in which most sightings agree with the profile, by their number of sightings.
   double Agreement() const {
-    const auto stretch = static_cast<std::size_t>(kStretch);
-    std::vector<std::size_t> all(profile_.inverse_height.size() / stretch + 1);
+    std::vector<std::size_t> all(profile_.inverse_height.size() / kStretch + 1);
     std::vector<std::size_t> agreeing(all.size());
     for (const auto& s : sightings_) {
       const auto [error, sigma] = Compare(s);
-      const std::size_t k = Locate(profile_, s.along).node / stretch;
+      const std::size_t k = Locate(profile_, s.along).node / kStretch;
       ++all[k];
       if (std::abs(error) < kTukey * sigma) ++agreeing[k];
     }

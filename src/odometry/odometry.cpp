@@ -59,8 +59,8 @@ void RefineSegments(const FinalRefinementOptions& options, const std::vector<Fra
 }
 
 /// Of the camera in the world, from that of the left twist of T_cam_world.
-Eigen::Matrix<double, 6, 6> InWorld(const SE3& T_cam_world, const Eigen::Matrix<double, 6, 6>& covariance) {
-  Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
+Matrix6d InWorld(const SE3& T_cam_world, const Matrix6d& covariance) {
+  Matrix6d turn = Matrix6d::Zero();
   turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = T_cam_world.Inverse().RotationMatrix();
   return turn * covariance * turn.transpose();
 }

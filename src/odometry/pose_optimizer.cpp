@@ -73,7 +73,7 @@ Eigen::Matrix<double, 2, 6> ReprojectionJacobian(const SE3& T_cam_world, const P
 PoseEstimate PoseOptimizer::Optimize(std::span<const PoseObservation> observations, const SE3& start) const {
   PoseEstimate result{.T_cam_world = start, .inliers = std::vector<bool>(observations.size())};
   if (observations.size() < 3) return result;
-  Eigen::Matrix<double, 6, 6> normal;
+  Matrix6d normal;
   for (int iteration = 0; iteration < options_.iterations; ++iteration) {
     const double scale = RobustScale(ResidualNorms(observations, result.T_cam_world));
     normal.setZero();
@@ -102,9 +102,9 @@ PoseEstimate PoseOptimizer::Optimize(std::span<const PoseObservation> observatio
     ++result.inlier_count;
     result.cost += TukeyWeight(norms[i], kTukey * result.scale_px) * norms[i] * norms[i];
   }
-  const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> solver(normal);
+  const Eigen::LDLT<Matrix6d> solver(normal);
   if (solver.info() == Eigen::Success && solver.vectorD().minCoeff() > 0.0) {
-    result.covariance = result.scale_px * result.scale_px * solver.solve(Eigen::Matrix<double, 6, 6>::Identity());
+    result.covariance = result.scale_px * result.scale_px * solver.solve(Matrix6d::Identity());
   }
   return result;
 }

@@ -16,8 +16,8 @@ constexpr double kUncertain = 3.0;      // times the usual standard deviation
 constexpr std::size_t kMostShare = 10;  // of the run: one in so many may be left out at either end
 
 /// Ad(T) in twists (translation, rotation): T Exp(d) = Exp(Ad(T) d) T.
-PoseUncertainty::Covariance Adjoint(const SE3& T) {
-  PoseUncertainty::Covariance adjoint = PoseUncertainty::Covariance::Zero();
+Matrix6d Adjoint(const SE3& T) {
+  Matrix6d adjoint = Matrix6d::Zero();
   adjoint.topLeftCorner<3, 3>() = adjoint.bottomRightCorner<3, 3>() = T.RotationMatrix();
   adjoint.topRightCorner<3, 3>() = so3::Hat(T.translation()) * T.RotationMatrix();
   return adjoint;
@@ -44,8 +44,8 @@ PoseUncertainty::PoseUncertainty(const BundleOptions& options, const BundleProbl
   });
 }
 
-std::vector<PoseUncertainty::Covariance> PoseUncertainty::Covariances(std::size_t origin) const {
-  std::vector<Covariance> covariances;
+std::vector<Matrix6d> PoseUncertainty::Covariances(std::size_t origin) const {
+  std::vector<Matrix6d> covariances;
   const auto of_origin = samples_.middleRows<6>(6 * static_cast<Eigen::Index>(origin));
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     const Eigen::Matrix<double, 6, Eigen::Dynamic> relative = samples_.middleRows<6>(6 * static_cast<Eigen::Index>(i)) -

@@ -28,7 +28,6 @@ constexpr double kLargestCorrection = 4.0;  // if it is a few of its usual error
 constexpr double kNearPx = 10.0;            // closer to where the camera heads than this, slopes are not seen
 
 using Matrix5d = Eigen::Matrix<double, 5, 5>;
-using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Vectors = Eigen::Matrix<double, 6, 5>;  // direction and turn rate, by a step of the motion
 
 Vectors VectorsByStep(const CameraMotion::Tangents& tangents) {
@@ -36,6 +35,11 @@ Vectors VectorsByStep(const CameraMotion::Tangents& tangents) {
   vectors.topLeftCorner<3, 2>() = tangents;
   vectors.bottomRightCorner<3, 3>().setIdentity();
   return vectors;
+}
+
+double InverseDepthOf(const CameraMotion& motion, const PixelGeometry& pixel, const Eigen::Vector2d& flow) {
+  const Eigen::Vector2d away = motion.Away(pixel);
+  return std::max(0.0, away.dot(motion.WithoutTurn(pixel, flow))) / (away.squaredNorm() + kNearPx * kNearPx);
 }
 
 double UsualError(const Eigen::Vector2d& flow) { return kSmallestErrorPxS + kUsualError * flow.norm(); }
@@ -140,18 +144,14 @@ void EgoMotion::Orient(const std::vector<FlowSample>& features, const std::vecto
 }
 
 double EgoMotion::InverseDepth(const FlowSample& feature) const {
-  if (!known_) return 0.0;
-  const PixelGeometry pixel = lens_.At(feature.position);
-  const Eigen::Vector2d away = motion_.Away(pixel);
-  const Eigen::Vector2d flow = motion_.WithoutTurn(pixel, feature.flow);
-  return std::max(0.0, away.dot(flow)) / (away.squaredNorm() + kNearPx * kNearPx);
+  return known_ ? InverseDepthOf(motion_, lens_.At(feature.position), feature.flow) : 0.0;
 }
 
 PatchFlow EgoMotion::At(const FlowSample& feature, const Eigen::Vector2d& slope) const {
   if (!known_) return {};
   const PixelGeometry pixel = lens_.At(feature.position);
   const Eigen::Vector2d away = motion_.Away(pixel);
-  const double inverse_depth = InverseDepth(feature);
+  const double inverse_depth = InverseDepthOf(motion_, pixel, feature.flow);
   PatchFlow patch;
   constexpr double kStep = 2.0 * LensGrid::kSpacingPx;
   for (int axis = 0; axis < 2; ++axis) {

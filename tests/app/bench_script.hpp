@@ -17,7 +17,8 @@ class BenchScriptTest : public EvoRunTest {
   /// `script` as in bench_odometry: its file and the folder in out/ that its tables go to.
   explicit BenchScriptTest(std::string script) : script_(std::move(script)) {}
 
-  void WriteScene(const std::string& name, const std::string& length_m, const std::string& duration_s = "0.3") const {
+  void WriteScene(const std::string& name, const std::string& length_m = "0.3",
+                  const std::string& duration_s = "0.3") const {
     Write(name + ".yaml",
           "scene:\n  kind: slider\n  calibration: davis240c\nmotion:\n  kind: slider\n  slider:\n    duration_s: " +
               duration_s + "\n    length_m: " + length_m + "\nsimulation:\n  samples: 1\n  image_hz: 0\n");
@@ -32,6 +33,14 @@ class BenchScriptTest : public EvoRunTest {
     out = ReadFile(folder / "stdout");
     err = ReadFile(folder / "stderr");
     return WEXITSTATUS(status);
+  }
+
+  /// The same words again: nothing is done, and the same said.
+  void ExpectNothingToDo(const std::string& words) {
+    const std::string before = out;
+    ASSERT_EQ(Bench(words), 0) << err;
+    EXPECT_EQ(out, before);
+    EXPECT_EQ(err, "") << "nothing to do";
   }
 
   bool Simulated() const { return err.find("simulate   ") != std::string::npos; }

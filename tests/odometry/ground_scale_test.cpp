@@ -230,7 +230,7 @@ TEST(GroundScale, MovesThePointsWithTheFramesThatSeeThem) {
 
 TEST(GroundScale, KeepsRotationsAndTheFirstPose) {
   Street street = StreetMaker({.frames = 300, .bend = 0.002}).Make();
-  street.segments[0].covariances.assign(street.frames.size(), Eigen::Matrix<double, 6, 6>::Identity());
+  street.segments[0].covariances.assign(street.frames.size(), Matrix6d::Identity());
   const Street before = street;
   ASSERT_TRUE(Scale(&street).found);
   EXPECT_NEAR(street.segments[0].covariances[100](1, 1), std::pow(street.scale[100], 2), 0.1);

@@ -66,7 +66,7 @@ TEST(PoseOptimizer, WithstandsThirtyPercentOutliers) {
 }
 
 TEST(PoseOptimizer, CovarianceForetellsTheSpread) {
-  Eigen::Matrix<double, 6, 6> spread = Eigen::Matrix<double, 6, 6>::Zero(), foretold = spread;
+  Matrix6d spread = Matrix6d::Zero(), foretold = spread;
   const int trials = 200;
   for (int trial = 0; trial < trials; ++trial) {
     const auto estimate = PoseOptimizer({}).Optimize(Scene(60, 0.4, 100 + trial), Truth());

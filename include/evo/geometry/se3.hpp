@@ -6,6 +6,7 @@
 namespace evo {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 namespace so3 {
 

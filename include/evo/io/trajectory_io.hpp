@@ -34,6 +34,6 @@ void WriteTum(const std::filesystem::path& path, const Trajectory& trajectory);
 /// Writes a row `timestamp` and the upper triangle, row by row, of the covariance of (x, y, z, rx, ry, rz) for each
 /// pose: its position and its rotation vector, both along the axes of the world. Throws Error (kOutput).
 void WritePoseCovariances(const std::filesystem::path& path, const Trajectory& trajectory,
-                          const std::vector<Eigen::Matrix<double, 6, 6>>& covariances);
+                          const std::vector<Matrix6d>& covariances);
 
 }  // namespace evo

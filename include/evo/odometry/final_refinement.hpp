@@ -31,7 +31,7 @@ struct Segment {
   std::vector<int> inliers;      ///< of these frames
   /// Of the left twists of these poses, the first pose and the distance of the farthest held; empty before
   /// RefineSegment.
-  std::vector<Eigen::Matrix<double, 6, 6>> covariances;
+  std::vector<Matrix6d> covariances;
   std::vector<Point> points;  ///< of the map
 };
 

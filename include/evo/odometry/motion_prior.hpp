@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <vector>
 
 #include "evo/geometry/se3.hpp"
@@ -20,13 +21,12 @@ struct MotionPrior {
 /// them.
 struct VelocityChange {
   Vector6d value;
-  Eigen::Matrix<double, 6, 6> by_before, by_here, by_after;
+  Matrix6d by_before, by_here, by_after;
 };
 
-/// `before_s` and `after_s` are the times from the pose before, and to the one after.
-Vector6d MeasureVelocityChange(const SE3& before, const SE3& here, const SE3& after, double before_s, double after_s);
-VelocityChange LinearizeVelocityChange(const SE3& before, const SE3& here, const SE3& after, double before_s,
-                                       double after_s);
+/// At pose `i`, which is neither the first nor the last; `t` in s.
+Vector6d MeasureVelocityChange(const std::vector<SE3>& poses, const std::vector<double>& t, std::size_t i);
+VelocityChange LinearizeVelocityChange(const std::vector<SE3>& poses, const std::vector<double>& t, std::size_t i);
 
 /// With the costs of a prior that expects velocity to change `times` as much as is usual among `poses`, whose sightings
 /// have the noise `sigma_px`.

@@ -31,7 +31,7 @@ struct OdometryResult {
   std::vector<int> inliers;  ///< points that agreed with each of them
   /// Of each of them, if there was a final refinement: position and rotation vector, both along the axes of the world,
   /// relative to the segment's first pose and to the distance of its farthest. In units of the trajectory, and rad.
-  std::vector<Eigen::Matrix<double, 6, 6>> covariances;
+  std::vector<Matrix6d> covariances;
   std::vector<Point> points;  ///< the map, world
   bool resampled = false;     ///< the tracks were asynchronous
   int frames = 0;             ///< with and without a pose

@@ -31,7 +31,7 @@ struct PoseEstimate {
   double scale_px = 0.0;  ///< robust standard deviation of a residual's coordinate
   double cost = 0.0;      ///< sum of the weighted squared residuals, px^2
   /// Of the left twist (translation, rotation); zero if the pose is not determined.
-  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  Matrix6d covariance = Matrix6d::Zero();
 };
 
 /// e(xi) = u - (1/Z) K exp(xi^) P (equation 1) in raw pixels, to first order about the observation. Infinite behind the

@@ -17,14 +17,12 @@ namespace evo {
 /// poses' errors.
 class PoseUncertainty {
  public:
-  using Covariance = Eigen::Matrix<double, 6, 6>;
-
   /// At a minimum that AdjustBundle has found with the same options. Does not depend on the number of threads.
   PoseUncertainty(const BundleOptions& options, const BundleProblem& problem, ThreadPool* pool = nullptr);
 
   /// Of the left twists (translation, rotation) of all poses relative to `origin`, which itself has none; the scale is
   /// the problem's. All zero if the system was singular.
-  std::vector<Covariance> Covariances(std::size_t origin) const;
+  std::vector<Matrix6d> Covariances(std::size_t origin) const;
   /// Standard deviation of the camera's turn from one pose to another, rad.
   double Turn(std::size_t from, std::size_t to) const;
   /// [begin, end) of the poses without those at either end, at most a tenth of all, whose turn towards the others is

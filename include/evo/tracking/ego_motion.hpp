@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "evo/geometry/se3.hpp"
 #include "evo/tracking/camera_motion.hpp"
 #include "evo/tracking/flow_field.hpp"
 #include "evo/tracking/lens_grid.hpp"
@@ -50,9 +51,7 @@ class EgoMotion {
   Eigen::Vector2d SlopeOf(const Eigen::Vector2d& position, const Eigen::Matrix2d& rate) const;
 
  private:
-  using Matrix6d = Eigen::Matrix<double, 6, 6>;  ///< over direction and turn rate
-
-  /// What the motion before says.
+  /// What the motion before says; matrices are over direction and turn rate.
   struct Expectation {
     CameraMotion motion;
     Matrix6d information = Matrix6d::Zero();  ///< in what a flow tells
