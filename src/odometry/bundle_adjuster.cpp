@@ -198,6 +198,7 @@ std::vector<InnovationStep> InnovationSteps(const BundleProblem& problem, double
       magnifications.push_back(1.0 / std::clamp(depth_share, 1.0 / kLargestMagnification, kLargestMagnification));
     }
     AppendInnovationSteps(drift, magnifications, &steps);
+    for (std::size_t i = begin[p]; i < begin[p + 1]; ++i) steps[i].scale *= point.weight;
   }
   return steps;
 }

@@ -10,6 +10,7 @@
 #include "evo/odometry/bundle_adjuster.hpp"
 #include "evo/odometry/pose_optimizer.hpp"
 #include "evo/odometry/pose_uncertainty.hpp"
+#include "evo/odometry/track_weights.hpp"
 #include "odometry/median.hpp"
 #include "odometry/run_bundle.hpp"
 
@@ -18,19 +19,9 @@ namespace evo {
 namespace {
 
 constexpr int kFewestSightings = 3;         // of a point worth keeping
-constexpr double kMedianToSigma = 0.8493;   // the norm of a 2-d unit Gaussian has the median 1.1774
 constexpr double kCauchyEfficient = 2.385;  // 95 % efficiency under Gaussian noise
-constexpr double kOutlierSigmas = 5.0;
-constexpr double kSmallestSigmaPx = 0.05;
-constexpr double kUncertain = 3.0;  // times the usual standard deviation
+constexpr double kUncertain = 3.0;          // times the usual standard deviation
 constexpr double kSmallestInverseDepth = 1e-9;
-
-/// Standard deviation of a coordinate of the errors, from the median of their norms.
-double MeasureNoise(const std::vector<Eigen::Vector2d>& errors) {
-  std::vector<double> norms;
-  for (const auto& error : errors) norms.push_back(error.norm());
-  return std::max(kSmallestSigmaPx, kMedianToSigma * Median(std::move(norms)));
-}
 
 /// Leaves out the tracks that mostly contradict the motion: things that move by themselves, and slips.
 void DropContradictions(BundleProblem* problem) {
@@ -48,6 +39,7 @@ BundleOptions Adjust(const FinalRefinementOptions& options, const std::function<
                      const std::vector<double>& t, ThreadPool* pool, BundleProblem* problem) {
   BundleOptions last{.iterations = options.iterations, .drift = options.drift};
   for (int round = 0; round < options.rounds; ++round) {
+    if (options.own_noise && round > 0) WeighTracks(options.drift, problem);
     const double sigma_px = MeasureNoise(BundleInnovations(*problem, options.drift));
     if (options.motion > 0.0) problem->motion = MeasureMotion(problem->T_cam_world, t, options.motion, sigma_px);
     last.loss_px = kCauchyEfficient * sigma_px;
@@ -205,6 +197,7 @@ void Register(Parameters& parameters, FinalRefinementOptions& options) {
                  "variance by which tracks drift from frame to frame, over that of their noise");
   parameters.Add("odometry.final.motion", &options.motion, 0, 1000,
                  "velocity is expected to change so many times as much as usual; 0: no matter how much");
+  parameters.Add("odometry.final.own_noise", &options.own_noise, "a track counts as much as its own noise lets it");
   parameters.Add("odometry.final.iterations", &options.iterations, 1, 1000, "iterations of each round");
   parameters.Add("odometry.final.rounds", &options.rounds, 1, 100, "rounds, the noise measured anew before each");
   parameters.Add("odometry.final.budget", &options.budget, 1e3, 1e12,

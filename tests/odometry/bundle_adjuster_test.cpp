@@ -10,6 +10,7 @@
 
 #include "evo/odometry/block_skyline.hpp"
 #include "evo/odometry/pose_uncertainty.hpp"
+#include "evo/odometry/track_weights.hpp"
 
 namespace evo {
 namespace {
@@ -320,6 +321,58 @@ TEST(BundleAdjuster, ExpectingTheUsualMotionHoldsAPoseOfFewTracks) {
   }
   EXPECT_LT(with, 0.03);
   EXPECT_GT(without, 0.1);
+}
+
+/// A drive in which every other track is eight times as noisy as the others.
+BundleProblem DriveWithNoisyTracks(std::uint32_t seed) {
+  auto problem = Drive(40, 500, 0.1, seed);
+  problem.fixed_frames = 2;
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0.0, 0.8 / 226.0);
+  for (auto& o : problem.observations) {
+    if (o.point % 2 == 0) o.x += Eigen::Vector2d(normal(random), normal(random));
+  }
+  return problem;
+}
+
+TEST(BundleAdjuster, TracksWeighAsTheirNoiseLetsThem) {
+  auto problem = DriveWithNoisyTracks(1);
+  WeighTracks(0.0, &problem);
+  std::array<std::vector<double>, 2> weights;
+  for (std::size_t p = 0; p < problem.points.size(); ++p) weights[p % 2].push_back(problem.points[p].weight);
+  for (auto& of_kind : weights) std::ranges::sort(of_kind);
+  const double ratio = weights[1][weights[1].size() / 2] / weights[0][weights[0].size() / 2];
+  EXPECT_GT(ratio, 2.0);  // the usual noise draws both towards each other
+  EXPECT_LT(ratio, 8.1);
+  EXPECT_GT(weights[1].front(), weights[0].back());
+  const auto weighted = problem;
+  WeighTracks(0.0, &problem);
+  for (std::size_t p = 0; p < problem.points.size(); ++p)
+    EXPECT_EQ(problem.points[p].weight, weighted.points[p].weight);
+}
+
+TEST(BundleAdjuster, WeighingTracksHelpsWhereTheirNoiseDiffers) {
+  const auto turn_error = [](bool weigh, std::uint32_t seed) {
+    const auto truth = Drive(40, 500, 0.0, seed);
+    auto problem = DriveWithNoisyTracks(seed);
+    const BundleOptions options{.iterations = 30, .loss_px = 100.0};
+    AdjustBundle(options, &problem);
+    if (weigh) {
+      WeighTracks(0.0, &problem);
+      AdjustBundle(options, &problem);
+    }
+    double sum = 0.0;
+    for (std::size_t i = 0; i < truth.T_cam_world.size(); ++i) {
+      sum += (problem.T_cam_world[i] * truth.T_cam_world[i].Inverse()).Log().tail<3>().squaredNorm();
+    }
+    return sum;
+  };
+  double with = 0.0, without = 0.0;
+  for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+    with += turn_error(true, seed);
+    without += turn_error(false, seed);
+  }
+  EXPECT_LT(std::sqrt(with), 0.5 * std::sqrt(without));
 }
 
 TEST(BundleAdjuster, OutliersHardlyMatter) {

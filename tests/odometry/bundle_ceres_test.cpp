@@ -30,7 +30,7 @@ BundleProblem DisturbedDrive(std::uint32_t seed) {
                                      Eigen::Vector3d(0.05 * i, 0.0, -0.5 * i));
   }
   for (int p = 0; p < 40; ++p) {
-    problem.points.push_back({p % 3, {side(random), side(random), 1.0 / depth(random)}});
+    problem.points.push_back({p % 3, {side(random), side(random), 1.0 / depth(random)}, 0.7 + 0.2 * (p % 4)});
     for (int i = p % 3; i < kFrames; ++i) {
       const Eigen::Vector3d q = problem.T_cam_world[i] * WorldPosition(problem, problem.points.back());
       Eigen::Vector2d error_px(0.4 * normal(random), 0.4 * normal(random));
@@ -100,7 +100,7 @@ Eigen::MatrixXd Whitening(const BundleProblem& problem, double drift, std::size_
   }
   const Eigen::MatrixXd factor = testing::TrackCovariance(drift, magnifications).llt().matrixL();
   const double settled = 0.5 * (drift + std::sqrt(drift * drift + 4.0 * drift));
-  return std::sqrt(1.0 + settled) * factor.inverse();
+  return problem.points[problem.observations[first].point].weight * std::sqrt(1.0 + settled) * factor.inverse();
 }
 
 /// A residual and a loss for every sighting of that track.

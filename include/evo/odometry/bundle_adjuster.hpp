@@ -14,6 +14,7 @@ namespace evo {
 struct BundlePoint {
   int anchor = 0;                 ///< frame
   Eigen::Vector3d inverse_depth;  ///< alpha, beta, rho
+  double weight = 1.0;            ///< of its sightings' errors: their usual noise over this track's own
 };
 
 struct BundleObservation {
@@ -67,7 +68,7 @@ Eigen::Vector3d WorldPosition(const BundleProblem& problem, const BundlePoint& p
 /// The residual of every observation in px, infinite behind the camera.
 std::vector<Eigen::Vector2d> BundleErrors(const BundleProblem& problem);
 
-/// The same as innovations for that drift, see InnovationStep.
+/// The same as innovations for that drift, see InnovationStep, times the weights of their points.
 std::vector<Eigen::Vector2d> BundleInnovations(const BundleProblem& problem, double drift);
 
 /// The part of every residual that is thought to be drift, see EstimateDrift.

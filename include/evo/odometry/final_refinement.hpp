@@ -18,9 +18,10 @@ struct FinalRefinementOptions {
   double drift = 0.04;
   /// Velocity is expected to change so many times as much as is usual, see MotionPrior; 0: no matter how much.
   double motion = 2.0;
-  int rounds = 3;       ///< of adjustment, the noise measured anew before each
-  int iterations = 4;   ///< of each round
-  double budget = 4e6;  ///< 6x6 block products an iteration may cost; beyond it frames are thinned out
+  bool own_noise = true;  ///< a track counts as much as its own noise lets it, see WeighTracks
+  int rounds = 3;         ///< of adjustment, the noise measured anew before each
+  int iterations = 4;     ///< of each round
+  double budget = 4e6;    ///< 6x6 block products an iteration may cost; beyond it frames are thinned out
 };
 void Register(Parameters& parameters, FinalRefinementOptions& options);
 
