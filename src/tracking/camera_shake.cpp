@@ -14,14 +14,18 @@ namespace evo {
 namespace {
 
 constexpr double kKnotS = 0.02;             // of the spline: follows a shake of up to some 20 Hz
+constexpr double kSmearS = 0.016;           // half a window that smears like the sensor
 constexpr double kLongestHalfWindow = 4.0;  // knots; longer windows are treated like this
 constexpr int kWeights = 12;                // knots that such a window depends on
 constexpr double kInstant = 1e-3;           // knots; a shorter half window is none
-constexpr std::array<double, 5> kDifference{1.0, -4.0, 6.0, -4.0, 1.0};
-constexpr int kSpan = 4 + kWeights + 1;     // knots that a difference depends on
+constexpr double kSlopeReach = 0.77;        // the slope over a window is about that of the chord over so much of it
+constexpr std::array<double, 5> kPositionDifference{1.0, -4.0, 6.0, -4.0, 1.0};
+constexpr std::array<double, 3> kFlowDifference{1.0, -2.0, 1.0};
+constexpr double kLongestStep = 1.2501;     // knots from frame to frame; longer ones tell nothing of a shake
+constexpr int kSpan = kWeights + 6;         // knots that a difference over four such steps depends on
 constexpr double kUsualDifferencePx = 1.0;  // beyond this a difference is taken for an outlier
-constexpr double kShakePx = 1.0;            // usual size of the shake
-constexpr int kRounds = 3;
+constexpr double kShakePx = 0.5;            // usual size of the shake
+constexpr int kRounds = 2;
 // Stretches that are solved each by itself, with a margin on either side.
 constexpr TimeNs kStretch = 5 * kNsPerSecond;
 constexpr TimeNs kMargin = kNsPerSecond / 2;
@@ -32,23 +36,37 @@ using ImageJacobian = Eigen::Matrix<double, 2, 3>;
 double SplineIntegral(double u) {
   if (u > 0.0) return 1.0 - SplineIntegral(-u);
   if (u <= -2.0) return 0.0;
-  if (u <= -1.0) return std::pow(2.0 + u, 4) / 24.0;
+  const double square = (2.0 + u) * (2.0 + u);
+  if (u <= -1.0) return square * square / 24.0;
   return 0.5 + u * (2.0 / 3.0 - u * u * (1.0 / 3.0 + u / 8.0));
 }
 
 double Spline(double u) {
   const double a = std::abs(u);
   if (a >= 2.0) return 0.0;
-  return a >= 1.0 ? std::pow(2.0 - a, 3) / 6.0 : 2.0 / 3.0 - a * a * (1.0 - 0.5 * a);
+  return a >= 1.0 ? (2.0 - a) * (2.0 - a) * (2.0 - a) / 6.0 : 2.0 / 3.0 - a * a * (1.0 - 0.5 * a);
 }
 
 /// An observation, and how it depends on the coefficients of the knots from `first` on.
 struct Sample {
   Eigen::Vector2d position = Eigen::Vector2d::Zero();
+  Eigen::Vector2d flow = Eigen::Vector2d::Zero();  ///< px/s
   ImageJacobian jacobian = ImageJacobian::Zero();
+  double half_s = 0.0;  ///< half of the window
+  double t_knots = 0.0;
   int first = 0;
   std::array<double, kWeights> instant{};  ///< the spline at the stamp
   std::array<double, kWeights> window{};   ///< its mean over the window
+  std::array<double, kWeights> slope{};    ///< its slope over the window, 1/s
+};
+
+/// A difference of positions or flows over time, px: the jacobian times the `weights` of the coefficients from `first`
+/// on, and noise.
+struct Difference {
+  Eigen::Vector2f value = Eigen::Vector2f::Zero();
+  Eigen::Matrix<float, 2, 3> jacobian;  ///< in the middle
+  int first = 0;
+  std::array<float, kSpan> weights{};
 };
 
 /// The normal equations of the spline: a band of 3 x 3 blocks.
@@ -57,13 +75,18 @@ class ShakeEquations {
   explicit ShakeEquations(std::size_t knots)
       : blocks_(knots * kSpan, Eigen::Matrix3d::Zero()), right_(knots, Eigen::Vector3d::Zero()) {}
 
-  /// `rows` [k] is the derivative of the residual with respect to the coefficients of knot `first` + k.
-  void Add(int first, const std::array<ImageJacobian, kSpan>& rows, const Eigen::Vector2d& residual, double weight) {
+  void Add(const Difference& difference, double weight) {
+    const ImageJacobian jacobian = difference.jacobian.cast<double>();
+    const Eigen::Matrix3d square = weight * jacobian.transpose() * jacobian;
+    const Eigen::Vector3d right = weight * jacobian.transpose() * difference.value.cast<double>();
     for (int i = 0; i < kSpan; ++i) {
-      const Eigen::Matrix<double, 3, 2> left = weight * rows[i].transpose();
-      if (left.isZero(0.0)) continue;
-      right_[first + i] += left * residual;
-      for (int k = i; k < kSpan; ++k) Block(first + i, k - i) += left * rows[k];
+      const double left = difference.weights[i];
+      if (left == 0.0) continue;
+      right_[difference.first + i] += left * right;
+      for (int k = i; k < kSpan; ++k) {
+        const double both = left * difference.weights[k];
+        if (both != 0.0) Block(difference.first + i, k - i) += both * square;
+      }
     }
   }
 
@@ -104,13 +127,9 @@ class ShakeEquations {
 class ShakeEstimator {
  public:
   /// `tracks`: the observations of the stretch, in order of time.
-  ShakeEstimator(const LensGrid& lens, std::span<const TrackObservation> tracks, std::span<const float> half_windows_s)
-      : lens_(lens), tracks_(tracks), half_windows_s_(half_windows_s), order_(tracks.size()) {
-    std::iota(order_.begin(), order_.end(), std::size_t{0});
-    std::ranges::stable_sort(order_, {}, [&](std::size_t i) { return tracks_[i].id; });
-    for (std::size_t i = 0; i < order_.size(); ++i) {
-      if (i == 0 || tracks_[order_[i]].id != tracks_[order_[i - 1]].id) starts_.push_back(i);
-    }
+  ShakeEstimator(const LensGrid& lens, std::span<const TrackObservation> tracks,
+                 std::span<const ObservedWindow> windows)
+      : lens_(lens), tracks_(tracks), windows_(windows) {
     const auto second = std::ranges::upper_bound(tracks_, tracks_.front().t, {}, &TrackObservation::t);
     if (second != tracks_.end()) {
       const double frame_s = ToSeconds(second->t - tracks_.front().t);
@@ -118,6 +137,7 @@ class ShakeEstimator {
     }
     const auto knots = static_cast<std::size_t>(InKnots(tracks_.back().t)) + 2 * kWeights;
     coefficients_.assign(knots, Eigen::Vector3d::Zero());
+    Collect();
     for (int round = 0; round < kRounds; ++round) Refine();
   }
 
@@ -141,67 +161,96 @@ class ShakeEstimator {
 
   Sample MakeSample(std::size_t index) const {
     const TrackObservation& observation = tracks_[index];
-    Sample sample{{observation.x, observation.y}, JacobianAt(observation), 0, {}, {}};
-    const double u = InKnots(observation.t);
-    const double half = std::min(half_windows_s_[index] / kKnotS, kLongestHalfWindow);
+    const ObservedWindow& window = windows_[index];
+    Sample sample{.position = {observation.x, observation.y},
+                  .flow = window.flow.cast<double>(),
+                  .jacobian = JacobianAt(observation),
+                  .half_s = window.half_s,
+                  .t_knots = InKnots(observation.t)};
+    const double u = sample.t_knots;
+    const double longest = kLongestHalfWindow * kKnotS;
+    const bool is_instant = sample.half_s <= kInstant * kKnotS;
+    const double half = std::min(std::hypot(sample.half_s, kSmearS), longest) / kKnotS;
+    const double reach = kSlopeReach * std::min(sample.half_s, longest) / kKnotS;
     const int first = static_cast<int>(std::floor(u)) - kWeights / 2 + 1;
     for (int k = 0; k < kWeights; ++k) {
       const double away = u - (first + k);
       sample.instant[k] = Spline(away);
-      sample.window[k] = half > kInstant ? (SplineIntegral(away + half) - SplineIntegral(away - half)) / (2.0 * half)
-                                         : sample.instant[k];
+      sample.window[k] = sample.instant[k];
+      if (is_instant) continue;
+      sample.window[k] = (SplineIntegral(away + half) - SplineIntegral(away - half)) / (2.0 * half);
+      sample.slope[k] = (Spline(away + reach) - Spline(away - reach)) / (2.0 * reach * kKnotS);
     }
     sample.first = first + kWeights;  // the knots begin so far before the first stamp
     return sample;
   }
 
+  /// The differences along all tracks.
+  void Collect() {
+    std::vector<std::size_t> order(tracks_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return tracks_[i].id; });
+    std::vector<Sample> samples;  // of a track
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      samples.push_back(MakeSample(order[i]));
+      if (i + 1 < order.size() && tracks_[order[i + 1]].id == tracks_[order[i]].id) continue;
+      CollectFrom(samples);
+      samples.clear();
+    }
+  }
+
+  void CollectFrom(std::span<const Sample> track) {
+    for (std::size_t i = 0; i + 2 * stride_ < track.size(); ++i) {
+      // Flows count as the way moved within half a window, and so err like positions.
+      const double half_s = track[i + stride_].half_s;
+      if (half_s > 0.0) AddDifference(track.subspan(i), half_s, kFlowDifference, &Sample::flow, &Sample::slope);
+      if (i + 4 * stride_ >= track.size()) continue;
+      AddDifference(track.subspan(i), 1.0, kPositionDifference, &Sample::position, &Sample::window);
+    }
+  }
+
+  template <std::size_t kSize>
+  void AddDifference(std::span<const Sample> samples, double unit, const std::array<double, kSize>& factors,
+                     Eigen::Vector2d Sample::*value, std::array<double, kWeights> Sample::*weights) {
+    const Sample& first = samples.front();
+    const double duration = samples[(kSize - 1) * stride_].t_knots - first.t_knots;
+    if (duration > (kSize - 1) * kLongestStep) return;
+    Difference difference{.jacobian = samples[kSize / 2 * stride_].jacobian.cast<float>(), .first = first.first};
+    for (std::size_t d = 0; d < kSize; ++d) {
+      const Sample& sample = samples[d * stride_];
+      const double factor = unit * factors[d];
+      difference.value += (factor * sample.*value).template cast<float>();
+      float* const at = difference.weights.data() + (sample.first - first.first);
+      for (int k = 0; k < kWeights; ++k) at[k] += static_cast<float>(factor * (sample.*weights)[k]);
+    }
+    differences_.push_back(difference);
+  }
+
   void Refine() {
     ShakeEquations equations(coefficients_.size());
-    std::vector<Sample> samples;
-    for (std::size_t track = 0; track < starts_.size(); ++track) {
-      samples.clear();
-      const std::size_t end = track + 1 < starts_.size() ? starts_[track + 1] : order_.size();
-      for (std::size_t i = starts_[track]; i < end; ++i) samples.push_back(MakeSample(order_[i]));
-      for (std::size_t i = 0; i + 4 * stride_ < samples.size(); ++i) {
-        AddDifference({&samples[i], &samples[i + stride_], &samples[i + 2 * stride_], &samples[i + 3 * stride_],
-                       &samples[i + 4 * stride_]},
-                      &equations);
+    for (const Difference& difference : differences_) {
+      Eigen::Vector3d shake = Eigen::Vector3d::Zero();
+      for (int k = 0; k < kSpan; ++k) {
+        if (difference.weights[k] != 0.0f) shake += difference.weights[k] * coefficients_[difference.first + k];
       }
+      const Eigen::Vector2f left = difference.value - difference.jacobian * shake.cast<float>();
+      equations.Add(difference, 1.0 / (1.0 + left.squaredNorm() / (kUsualDifferencePx * kUsualDifferencePx)));
     }
     coefficients_ = equations.Solve();
   }
 
-  void AddDifference(const std::array<const Sample*, 5>& samples, ShakeEquations* equations) const {
-    const int first = samples.front()->first;
-    if (samples.back()->first - first > kSpan - kWeights) return;  // frames so far apart tell nothing of shakes
-    std::array<ImageJacobian, kSpan> rows;
-    rows.fill(ImageJacobian::Zero());
-    Eigen::Vector2d difference = Eigen::Vector2d::Zero();
-    for (std::size_t d = 0; d < kDifference.size(); ++d) {
-      difference += kDifference[d] * samples[d]->position;
-      for (int k = 0; k < kWeights; ++k) {
-        rows[samples[d]->first - first + k] += kDifference[d] * samples[d]->window[k] * samples[d]->jacobian;
-      }
-    }
-    Eigen::Vector2d left = difference;
-    for (int k = 0; k < kSpan; ++k) left -= rows[k] * coefficients_[first + k];
-    const double weight = 1.0 / (1.0 + left.squaredNorm() / (kUsualDifferencePx * kUsualDifferencePx));
-    equations->Add(first, rows, difference, weight);
-  }
-
   const LensGrid& lens_;
   std::span<const TrackObservation> tracks_;
-  std::span<const float> half_windows_s_;
-  std::vector<std::size_t> order_;   // of the observations, track by track
-  std::vector<std::size_t> starts_;  // of the tracks in it
-  std::size_t stride_ = 1;           // frames from one knot to the next
+  std::span<const ObservedWindow> windows_;
+  std::size_t stride_ = 1;  // frames from one knot to the next
+  std::vector<Difference> differences_;
   std::vector<Eigen::Vector3d> coefficients_;
 };
 
 }  // namespace
 
-void RestoreShake(const Camera& camera, std::span<const float> half_windows_s, ThreadPool* pool, Tracks* tracks) {
-  if (std::ranges::all_of(half_windows_s, [](float half) { return half == 0.0f; })) return;
+void RestoreShake(const Camera& camera, std::span<const ObservedWindow> windows, ThreadPool* pool, Tracks* tracks) {
+  if (std::ranges::all_of(windows, [](const ObservedWindow& window) { return window.half_s == 0.0f; })) return;
   const LensGrid lens(camera);
   const Tracks smoothed = *tracks;
   const auto index_of = [&](TimeNs t) {
@@ -216,8 +265,7 @@ void RestoreShake(const Camera& camera, std::span<const float> half_windows_s, T
     const std::size_t end = index_of(from + kStretch);
     if (begin == end) return;
     const std::size_t count = index_of(from + kStretch + kMargin) - first;
-    const ShakeEstimator estimator(lens, std::span(smoothed).subspan(first, count),
-                                   half_windows_s.subspan(first, count));
+    const ShakeEstimator estimator(lens, std::span(smoothed).subspan(first, count), windows.subspan(first, count));
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Vector2d restored = estimator.Restored(i - first);
       if (!camera.Contains(restored)) continue;

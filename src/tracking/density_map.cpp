@@ -157,12 +157,17 @@ Eigen::Matrix<double, 2, 3> AssociationField::OwnMoments(const DensityMap& map, 
   const Eigen::Matrix2f l = linear.cast<float>();
   const auto reach = static_cast<float>(patch_radius_px);
   Eigen::Array4f sum = Eigen::Array4f::Zero(), sum_u = Eigen::Array4f::Zero(), sum_v = Eigen::Array4f::Zero();
+  // The cells that can be inside.
+  const Eigen::Vector2d farthest = 1.01 * patch_radius_px * linear.inverse().cwiseAbs().rowwise().sum();
+  const int columns = farthest.x() < radius_ ? static_cast<int>(farthest.x()) : radius_;
+  const int rows = farthest.y() < radius_ ? static_cast<int>(farthest.y()) : radius_;
   for (int p = 0; p < map.planes(); ++p) {
     const float* votes = map.plane(p);
     const Pull* pulls = table_.data() + p * side_ * side_;
-    for (int r = 0, i = 0; r < side_; ++r) {
+    for (int r = radius_ - rows; r <= radius_ + rows; ++r) {
       const auto v = static_cast<float>(r - radius_);
-      for (int c = 0; c < side_; ++c, ++i) {
+      int i = r * side_ + radius_ - columns;
+      for (int c = radius_ - columns; c <= radius_ + columns; ++c, ++i) {
         const auto u = static_cast<float>(c - radius_);
         if (std::abs(l(0, 0) * u + l(0, 1) * v) > reach || std::abs(l(1, 0) * u + l(1, 1) * v) > reach) continue;
         const Pull pull = votes[i] * pulls[i];

@@ -103,7 +103,6 @@ void Accumulate(const LocalEvents& events, const PatchMotion& motion, DensityMap
 
 AlignmentQuality AlignToTemplate(const LocalEvents& events, const AssociationField& field, int planes,
                                  const AlignmentOptions& options, bool with_linear, PatchMotion* motion) {
-  const int free = with_linear ? 4 : 2;
   const Eigen::Vector4d prior(0.0, options.flow_prior, options.affine_prior, options.affine_prior);
   Correction moved = Correction::Zero();  // so far, which the priors pull back
   AlignmentQuality quality;
@@ -121,7 +120,12 @@ AlignmentQuality AlignToTemplate(const LocalEvents& events, const AssociationFie
     normal.diagonal() += prior;
     const Correction target = moments.pull - prior.asDiagonal() * moved;
     Correction step = Correction::Zero();
-    step.topRows(free) = normal.topLeftCorner(free, free).ldlt().solve(target.topRows(free));
+    // Of fixed size, which is faster.
+    if (with_linear) {
+      step = normal.ldlt().solve(target);
+    } else {
+      step.topRows<2>() = normal.topLeftCorner<2, 2>().ldlt().solve(target.topRows<2>());
+    }
     if (!step.allFinite()) return {};
     step *= kOverRelaxation;
     moved += step;

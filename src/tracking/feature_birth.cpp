@@ -78,7 +78,8 @@ std::optional<TrackedFeature> FeatureTracker::Birth(const EventHistory& history,
                          .inverse_depth = inverse_depth,
                          .slope = SurfaceSlope(depths, {position, inverse_depth}).value_or(Eigen::Vector2d::Zero()),
                          .events = DensityMap(options_.patch_radius_px + kTemplateMarginPx, planes()),
-                         .half_window = half_window};
+                         .half_window = half_window,
+                         .told_flow = flow};
   const PatchFlow patch = ego_motion_.At({position, flow}, feature.slope);
   PatchMotion motion;
   motion.flow = flow;

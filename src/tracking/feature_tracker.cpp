@@ -11,6 +11,7 @@ namespace {
 constexpr int kCoarseIterations = 6;
 constexpr int kNewbornFrames = 5;      // until then a feature has to prove itself
 constexpr double kSlowdown = 0.9;      // of a feature without events, from frame to frame
+constexpr double kFlowShare = 0.28;    // of the predicted flow's error that a window corrects, usually
 constexpr double kSlopeGain = 0.1;     // share of what one frame tells about the slope of a feature's plane
 constexpr double kDepthGain = 0.25;    // and about its depth
 constexpr double kSteepest = 1e-3;     // such a slope for a flow of 1 px/s, 1/px^2
@@ -65,10 +66,12 @@ std::vector<FlowSample> FeatureTracker::Flows() const {
   return flows;
 }
 
-std::vector<float> FeatureTracker::HalfWindowsS() const {
-  std::vector<float> half_windows;
-  for (const auto& feature : features_) half_windows.push_back(static_cast<float>(ToSeconds(feature.half_window)));
-  return half_windows;
+std::vector<ObservedWindow> FeatureTracker::Windows() const {
+  std::vector<ObservedWindow> windows;
+  for (const auto& feature : features_) {
+    windows.push_back({static_cast<float>(ToSeconds(feature.half_window)), feature.told_flow.cast<float>()});
+  }
+  return windows;
 }
 
 bool FeatureTracker::Track(const EventHistory& history, TimeNs t, TrackedFeature* feature) const {
@@ -122,6 +125,7 @@ bool FeatureTracker::Align(const EventHistory& history, TimeNs t, TrackedFeature
   }
   feature->position = position + motion.offset;
   feature->flow = motion.flow;
+  feature->told_flow = start.flow + (motion.flow - start.flow) / kFlowShare;
   feature->linear = motion.linear;
   feature->perspective = motion.perspective;
   LearnSlope((motion.linear * start.linear.inverse() - Eigen::Matrix2d::Identity()) / step_s, feature);
@@ -134,6 +138,7 @@ bool FeatureTracker::Rest(const PatchMotion& predicted, const Eigen::Vector2d& p
   if (feature->frames < kNewbornFrames || predicted.flow.norm() > options_.resting_flow_px_s) return false;
   feature->position = position;
   feature->flow = kSlowdown * predicted.flow;
+  feature->told_flow = feature->flow;
   feature->linear = predicted.linear;
   feature->perspective = predicted.perspective;
   return true;

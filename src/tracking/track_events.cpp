@@ -32,7 +32,7 @@ TrackingResult TrackEvents(EventReader* reader, const Camera& camera, const Trac
   EventHistory history(camera.width(), camera.height());
   const std::unique_ptr<Tracker> tracker = MakeTracker(camera, options, pool);
   TrackingResult result;
-  std::vector<float> half_windows;  // of the observations
+  std::vector<ObservedWindow> windows;  // of the observations
   const TimeNs interval = FromSeconds(options.frame_interval_s);
   const TimeNs half_window = FromSeconds(0.5 * options.longest_window_s);
 
@@ -44,8 +44,8 @@ TrackingResult TrackEvents(EventReader* reader, const Camera& camera, const Trac
     if (tracker->detected()) ++result.key_frames;
     const Tracks observations = tracker->Observations();
     result.tracks.insert(result.tracks.end(), observations.begin(), observations.end());
-    const auto windows = tracker->HalfWindowsS();
-    half_windows.insert(half_windows.end(), windows.begin(), windows.end());
+    const auto seen = tracker->Windows();
+    windows.insert(windows.end(), seen.begin(), seen.end());
     if (observe) observe({history, result.tracks, t});
   };
 
@@ -83,7 +83,7 @@ TrackingResult TrackEvents(EventReader* reader, const Camera& camera, const Trac
         ErrorKind::kNothingToDo,
         "the events span less than two event frames; choose a longer interval or a smaller tracker.frame_interval_s");
   }
-  if (options.restore_shake) RestoreShake(camera, half_windows, pool, &result.tracks);
+  if (options.restore_shake) RestoreShake(camera, windows, pool, &result.tracks);
   DropLoneObservations(&result.tracks);
   return result;
 }

@@ -16,14 +16,16 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kDurationS = 8.0;
+constexpr double kSmearS = 0.016;
 
-/// Points far away, seen by a camera that turns slowly and vibrates; each position is the mean over a window.
+/// Points far away, seen by a camera that turns slowly and vibrates; each position is the mean over a window, each flow
+/// the slope over it. The sensor smears positions like a longer window.
 struct ShakyTracks {
   Camera camera{MvsecDavis346()};
   double amplitude_rad = 0.002;
   double frequency_hz = 12.0;
   Tracks smoothed, exact;
-  std::vector<float> half_windows_s;
+  std::vector<ObservedWindow> windows;
 
   Vector3d Turn(double t) const {
     const double shake = amplitude_rad * std::sin(2.0 * M_PI * frequency_hz * t);
@@ -41,16 +43,20 @@ struct ShakyTracks {
       for (std::size_t i = 0; i < rays.size(); ++i) {
         const double t = frame * frame_s;
         const double half = i % 2 ? 0.04 : 0.005;
-        Vector2d mean = Vector2d::Zero();
+        Vector2d mean = Vector2d::Zero(), slope = Vector2d::Zero();
         constexpr int kSteps = 40;
         for (int k = 0; k < kSteps; ++k) {
-          mean += camera.Project(so3::Exp(Turn(t + half * ((k + 0.5) * 2.0 / kSteps - 1.0))) * rays[i]) / kSteps;
+          const double share = (k + 0.5) * 2.0 / kSteps - 1.0;
+          const auto seen = [&](double reach) { return camera.Project(so3::Exp(Turn(t + reach * share)) * rays[i]); };
+          mean += seen(std::hypot(half, kSmearS)) / kSteps;
+          slope += 3.0 * share / half * seen(half) / kSteps;
         }
         mean += noise_px * Vector2d(uniform() - 0.5, uniform() - 0.5);
+        slope += noise_px / half * Vector2d(uniform() - 0.5, uniform() - 0.5);
         const Vector2d now = camera.Project(so3::Exp(Turn(t)) * rays[i]);
         smoothed.push_back({static_cast<std::int64_t>(i), FromSeconds(t), mean.x(), mean.y()});
         exact.push_back({static_cast<std::int64_t>(i), FromSeconds(t), now.x(), now.y()});
-        half_windows_s.push_back(static_cast<float>(half));
+        windows.push_back({static_cast<float>(half), slope.cast<float>()});
       }
     }
   }
@@ -60,7 +66,7 @@ struct ShakyTracks {
     double sum = 0.0;
     int count = 0;
     for (std::size_t i = 0; i < tracks.size(); ++i) {
-      if (half_windows_s[i] < 0.02f) continue;
+      if (windows[i].half_s < 0.02f) continue;
       sum += std::pow(tracks[i].x - exact[i].x, 2) + std::pow(tracks[i].y - exact[i].y, 2);
       ++count;
     }
@@ -72,7 +78,7 @@ TEST(RestoreShake, GivesBackWhatLongWindowsSmoothAway) {
   const ShakyTracks scene(0.1);
   ThreadPool pool(2);
   Tracks restored = scene.smoothed;
-  RestoreShake(scene.camera, scene.half_windows_s, &pool, &restored);
+  RestoreShake(scene.camera, scene.windows, &pool, &restored);
   EXPECT_GT(scene.Error(scene.smoothed), 0.25);
   EXPECT_LT(scene.Error(restored), 0.4 * scene.Error(scene.smoothed));
 }
@@ -82,7 +88,7 @@ TEST(RestoreShake, DoesSoForShortFramesToo) {
     const ShakyTracks scene(0.1, 0.002, frame_s);
     ThreadPool pool(2);
     Tracks restored = scene.smoothed;
-    RestoreShake(scene.camera, scene.half_windows_s, &pool, &restored);
+    RestoreShake(scene.camera, scene.windows, &pool, &restored);
     EXPECT_LT(scene.Error(restored), 0.55 * scene.Error(scene.smoothed)) << frame_s;
   }
 }
@@ -91,11 +97,11 @@ TEST(RestoreShake, LeavesAloneWhatTellsNothing) {
   ThreadPool pool(1);
   const ShakyTracks slow(0.1, 0.002, 0.04);
   Tracks restored = slow.smoothed;
-  RestoreShake(slow.camera, slow.half_windows_s, &pool, &restored);
+  RestoreShake(slow.camera, slow.windows, &pool, &restored);
   for (std::size_t i = 0; i < restored.size(); ++i) ASSERT_EQ(restored[i].x, slow.smoothed[i].x);
   // A gap of an hour, equal stamps, a window longer than any.
   Tracks few = {{1, 0, 100, 100}, {1, 0, 101, 100}, {1, 3600 * kNsPerSecond, 102, 100}, {2, 3600 * kNsPerSecond, 5, 5}};
-  const std::vector<float> windows(few.size(), 1.0f);
+  const std::vector<ObservedWindow> windows(few.size(), {1.0f, {50.0f, 0.0f}});
   RestoreShake(slow.camera, windows, &pool, &few);
   EXPECT_EQ(few[2].x, 102);
 }
@@ -104,7 +110,7 @@ TEST(RestoreShake, HardlyDisturbsASteadyCamera) {
   const ShakyTracks scene(0.1, 0.0);
   ThreadPool pool(1);
   Tracks restored = scene.smoothed;
-  RestoreShake(scene.camera, scene.half_windows_s, &pool, &restored);
+  RestoreShake(scene.camera, scene.windows, &pool, &restored);
   EXPECT_LT(scene.Error(restored), scene.Error(scene.smoothed) + 0.02);
 }
 
@@ -112,9 +118,9 @@ TEST(RestoreShake, IsTheSameForAnyNumberOfThreadsAndLeavesInstantsAlone) {
   const ShakyTracks scene(0.1);
   ThreadPool one(1), three(3);
   Tracks a = scene.smoothed, b = scene.smoothed, c = scene.smoothed;
-  RestoreShake(scene.camera, scene.half_windows_s, &one, &a);
-  RestoreShake(scene.camera, scene.half_windows_s, &three, &b);
-  RestoreShake(scene.camera, std::vector<float>(c.size(), 0.0f), &one, &c);
+  RestoreShake(scene.camera, scene.windows, &one, &a);
+  RestoreShake(scene.camera, scene.windows, &three, &b);
+  RestoreShake(scene.camera, std::vector<ObservedWindow>(c.size()), &one, &c);
   for (std::size_t i = 0; i < a.size(); ++i) {
     ASSERT_EQ(a[i].x, b[i].x);
     ASSERT_EQ(a[i].y, b[i].y);

@@ -6,23 +6,25 @@
 #include "evo/core/time.hpp"
 #include "evo/geometry/camera.hpp"
 #include "evo/io/tracks.hpp"
+#include "evo/tracking/observed_window.hpp"
 
 namespace evo {
 
 /// Gives back to the positions of `tracks` what the windows that they come from have smoothed away.
 ///
 /// A position is the intercept of a straight motion fitted to the events of a window, so it is the mean of the true
-/// path over that window. Where the camera shakes (vibration, bumps) within the long window of a slow feature, that is
-/// not where the feature was at the stamp. But the shake is a rotation that all features share, and the fast ones with
-/// their short windows show it. So with a rotation phi(t) that is a cubic B-spline, J_i the image motion that it causes
-/// at track i, and K_i the mean over the window, each track is
-///     x_i(t) = s_i(t) + J_i(t) (K_i phi)(t) + noise
-/// with a smooth path s_i, of which fourth differences over time leave next to nothing. phi follows from those of all
-/// tracks by robust linear least squares, and each position moves by J_i (phi - K_i phi).
+/// path over that window; the flow is its slope. Where the camera shakes (vibration, bumps) within the long window of a
+/// slow feature, that is not where the feature was at the stamp. But the shake is a rotation that all features share,
+/// and the fast ones with their short windows show it, and the flows of all. So with a rotation phi(t) that is a cubic
+/// B-spline, J_i the image motion that it causes at track i, K_i the mean and L_i the slope over the window, position
+/// and flow of each track are
+///     x_i(t) = s_i(t) + J_i(t) (K_i phi)(t) + noise,  v_i(t) = s_i'(t) + J_i(t) (L_i phi)(t) + noise
+/// with a smooth path s_i, of which fourth differences of positions and second differences of flows leave next to
+/// nothing. phi follows from those of all tracks by robust linear least squares, and each position moves by
+/// J_i (phi - K_i phi). The sensor smears positions besides, since dark pixels answer late: K_i is of a longer window.
 ///
 /// Frames must be evenly spaced; where they are more than 25 ms apart they cannot show a shake and nothing changes.
-/// `half_windows_s`: half of the window of each observation, s; 0: of an instant. Every few seconds are solved for
-/// themselves.
-void RestoreShake(const Camera& camera, std::span<const float> half_windows_s, ThreadPool* pool, Tracks* tracks);
+/// `windows`: of each observation. Every few seconds are solved for themselves.
+void RestoreShake(const Camera& camera, std::span<const ObservedWindow> windows, ThreadPool* pool, Tracks* tracks);
 
 }  // namespace evo

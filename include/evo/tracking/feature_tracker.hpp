@@ -30,6 +30,7 @@ struct TrackedFeature {
   double information = 0.0;                               ///< see AssociationField, in the worst direction, at birth
   int frames = 1;                                         ///< lifetime so far
   TimeNs half_window = 0;                                 ///< of the events behind the position
+  Eigen::Vector2d told_flow = Eigen::Vector2d::Zero();    ///< px/s, what those events alone tell
 };
 
 /// Tracks features by expectation maximisation. The positions reported are those at the very instant of the event
@@ -42,7 +43,7 @@ class FeatureTracker : public Tracker {
   TimeNs before() const override { return FromSeconds(0.5 * options_.longest_window_s); }
   TimeNs after() const override { return before(); }
   Tracks Observations() const override;
-  std::vector<float> HalfWindowsS() const override;
+  std::vector<ObservedWindow> Windows() const override;
   bool detected() const override { return detected_; }
 
  private:

@@ -7,6 +7,7 @@
 #include "evo/events/event_history.hpp"
 #include "evo/geometry/camera.hpp"
 #include "evo/io/tracks.hpp"
+#include "evo/tracking/observed_window.hpp"
 #include "evo/tracking/tracker_options.hpp"
 
 namespace evo {
@@ -23,8 +24,8 @@ class Tracker {
 
   /// The live features in the last frame, by ascending id.
   virtual Tracks Observations() const = 0;
-  /// Half of the window of events around the stamp that each of them comes from, s; 0 where it is not around it.
-  virtual std::vector<float> HalfWindowsS() const = 0;
+  /// What each of them comes from; instants where the window is not around the stamp.
+  virtual std::vector<ObservedWindow> Windows() const = 0;
   /// Whether the last frame was a key frame, where new features were detected.
   virtual bool detected() const = 0;
 };

@@ -51,7 +51,7 @@ struct TrackerOptions {
   double fewest_inliers = 0.3;       ///< share of events that the template explains
   double largest_residual_px = 2.0;  ///< root mean square pull that is left on the events
   double largest_jump_px = 6.0;      ///< from where its flow predicted it
-  double largest_scale = 5.0;        ///< of the patch against its template, and its inverse
+  double largest_scale = 3.0;        ///< of the patch against its first window, and its inverse: errors grow with it
   double border_px = 3.0;            ///< a feature closer than this to the edge of the sensor is given up
 
   // Corners.
