@@ -16,6 +16,7 @@ ablations=(
   odometry.ground.hold_height=false
   odometry.final.motion=0
   odometry.final.drift=0
+  odometry.final.own_noise=false
   odometry.final_refinement=false
   odometry.window_refinement=false
   odometry.bootstrap.refine=false
