@@ -13,16 +13,15 @@ namespace evo {
 namespace {
 
 constexpr int kHuberIterations = 3;
-constexpr double kSmallestScalePx = 0.2;   // a lucky fit of few points must not reject the next
-constexpr double kLargestScalePx = 5.0;    // a bad start must not make every residual an inlier
-constexpr double kHuber = 1.345;           // 95 % efficiency under Gaussian noise
-constexpr double kTukey = 4.685;           // likewise
-constexpr double kMedianToSigma = 0.8493;  // the norm of a 2-d unit Gaussian has the median 1.1774
+constexpr double kSmallestScalePx = 0.2;  // a lucky fit of few points must not reject the next
+constexpr double kLargestScalePx = 5.0;   // a bad start must not make every residual an inlier
+constexpr double kHuber = 1.345;          // 95 % efficiency under Gaussian noise
+constexpr double kTukey = 4.685;          // likewise
 constexpr double kOutlierSigmas = 4.0;
 
 /// Standard deviation of a coordinate from the median norm of the residuals.
 double RobustScale(std::vector<double> norms) {
-  return std::clamp(kMedianToSigma * Median(std::move(norms)), kSmallestScalePx, kLargestScalePx);
+  return std::clamp(kMedianNormToSigma * Median(std::move(norms)), kSmallestScalePx, kLargestScalePx);
 }
 
 double HuberWeight(double error, double width) { return error <= width ? 1.0 : width / error; }

@@ -10,7 +10,6 @@ namespace evo {
 
 namespace {
 
-constexpr double kMedianToSigma = 0.8493;  // the norm of a 2-d unit Gaussian has the median 1.1774
 constexpr double kSmallestSigmaPx = 0.05;
 constexpr double kUsualFreedom = 10.0;  // degrees of freedom that the usual noise counts as
 constexpr double kPointFreedom = 3.0;   // what a point's numbers take of them
@@ -20,7 +19,7 @@ constexpr double kPointFreedom = 3.0;   // what a point's numbers take of them
 double MeasureNoise(const std::vector<Eigen::Vector2d>& errors) {
   std::vector<double> norms;
   for (const auto& error : errors) norms.push_back(error.norm());
-  return std::max(kSmallestSigmaPx, kMedianToSigma * Median(std::move(norms)));
+  return std::max(kSmallestSigmaPx, kMedianNormToSigma * Median(std::move(norms)));
 }
 
 void WeighTracks(double drift, BundleProblem* problem) {

@@ -141,18 +141,23 @@ void LetTracksDrift(double step_px, std::uint32_t seed, BundleProblem* problem) 
   }
 }
 
-/// Root mean square error of the poses' directions of view after an adjustment that expects that drift, rad.
+/// Root mean square error of the poses' directions of view, rad.
+double TurnError(const BundleProblem& problem, const BundleProblem& truth) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < truth.T_cam_world.size(); ++i) {
+    sum += (problem.T_cam_world[i] * truth.T_cam_world[i].Inverse()).Log().tail<3>().squaredNorm();
+  }
+  return std::sqrt(sum / static_cast<double>(truth.T_cam_world.size()));
+}
+
+/// The same after an adjustment that expects that drift.
 double TurnError(double drift, std::uint32_t seed) {
   const auto truth = Drive(40, 500, 0.0, seed);
   auto problem = Drive(40, 500, 0.1, seed);
   problem.fixed_frames = 2;
   LetTracksDrift(0.3, seed, &problem);
   AdjustBundle({.iterations = 30, .loss_px = 100.0, .drift = drift}, &problem);
-  double sum = 0.0;
-  for (std::size_t i = 0; i < truth.T_cam_world.size(); ++i) {
-    sum += (problem.T_cam_world[i] * truth.T_cam_world[i].Inverse()).Log().tail<3>().squaredNorm();
-  }
-  return std::sqrt(sum / static_cast<double>(truth.T_cam_world.size()));
+  return TurnError(problem, truth);
 }
 
 TEST(BundleAdjuster, ExpectingDriftHelpsWhereTracksDrift) {
@@ -347,8 +352,9 @@ TEST(BundleAdjuster, TracksWeighAsTheirNoiseLetsThem) {
   EXPECT_GT(weights[1].front(), weights[0].back());
   const auto weighted = problem;
   WeighTracks(0.0, &problem);
-  for (std::size_t p = 0; p < problem.points.size(); ++p)
+  for (std::size_t p = 0; p < problem.points.size(); ++p) {
     EXPECT_EQ(problem.points[p].weight, weighted.points[p].weight);
+  }
 }
 
 TEST(BundleAdjuster, WeighingTracksHelpsWhereTheirNoiseDiffers) {
@@ -361,11 +367,7 @@ TEST(BundleAdjuster, WeighingTracksHelpsWhereTheirNoiseDiffers) {
       WeighTracks(0.0, &problem);
       AdjustBundle(options, &problem);
     }
-    double sum = 0.0;
-    for (std::size_t i = 0; i < truth.T_cam_world.size(); ++i) {
-      sum += (problem.T_cam_world[i] * truth.T_cam_world[i].Inverse()).Log().tail<3>().squaredNorm();
-    }
-    return sum;
+    return std::pow(TurnError(problem, truth), 2);
   };
   double with = 0.0, without = 0.0;
   for (std::uint32_t seed = 1; seed <= 8; ++seed) {
