@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kCoarseIterations = 6;
 constexpr int kNewbornFrames = 5;      // until then a feature has to prove itself
+constexpr double kJoltPx = 0.2;        // motion by a jolt that is not left to the features' own alignment
 constexpr double kSlowdown = 0.9;      // of a feature without events, from frame to frame
 constexpr double kFlowShare = 0.28;    // of the predicted flow's error that a window corrects, usually
 constexpr double kSlopeGain = 0.1;     // share of what one frame tells about the slope of a feature's plane
@@ -30,18 +31,7 @@ FeatureTracker::FeatureTracker(const Camera& camera, const TrackerOptions& optio
       refill_(options) {}
 
 void FeatureTracker::Process(const EventHistory& history, TimeNs t) {
-  if (last_) {
-    std::vector<char> alive(features_.size());
-    pool_->ForEach(
-        features_.size(), [&](std::size_t i) { alive[i] = Track(history, t, &features_[i]) ? 1 : 0; }, 4);
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < features_.size(); ++i) {
-      if (!alive[i]) continue;
-      if (kept != i) features_[kept] = std::move(features_[i]);
-      ++kept;
-    }
-    features_.erase(features_.begin() + static_cast<std::ptrdiff_t>(kept), features_.end());
-  }
+  if (last_) Track(history, t);
   if (options_.ego_motion) {
     const double step_s = last_ ? ToSeconds(t - *last_) : 0.0;
     ego_motion_.Update(Flows(), step_s);
@@ -74,12 +64,40 @@ std::vector<ObservedWindow> FeatureTracker::Windows() const {
   return windows;
 }
 
-bool FeatureTracker::Track(const EventHistory& history, TimeNs t, TrackedFeature* feature) const {
-  if (!Align(history, t, feature)) return false;
-  ++feature->frames;
-  const double b = options_.border_px;
-  const auto& p = feature->position;
-  return p.x() >= b && p.y() >= b && p.x() <= width_ - 1 - b && p.y() <= height_ - 1 - b;
+void FeatureTracker::Track(const EventHistory& history, TimeNs t) {
+  AlignAll(history, t, {});
+  if (options_.follow_jolts) {
+    const Jolt jolt = FindJolt();
+    if (jolt.motion_px > kJoltPx) AlignAll(history, t, jolt);
+  }
+  const double step_s = ToSeconds(t - *last_);
+  std::vector<char> alive(features_.size());
+  pool_->ForEach(
+      features_.size(), [&](std::size_t i) { alive[i] = Advance(alignments_[i], step_s, &features_[i]) ? 1 : 0; }, 4);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < features_.size(); ++i) {
+    if (!alive[i]) continue;
+    if (kept != i) features_[kept] = std::move(features_[i]);
+    ++kept;
+  }
+  features_.erase(features_.begin() + static_cast<std::ptrdiff_t>(kept), features_.end());
+}
+
+void FeatureTracker::AlignAll(const EventHistory& history, TimeNs t, const Jolt& jolt) {
+  if (alignments_.size() < features_.size()) alignments_.resize(features_.size());
+  pool_->ForEach(
+      features_.size(), [&](std::size_t i) { Align(history, t, jolt, features_[i], &alignments_[i]); }, 4);
+}
+
+Jolt FeatureTracker::FindJolt() const {
+  std::vector<UnexpectedMotion> motions;
+  for (std::size_t i = 0; i < features_.size(); ++i) {
+    const FeatureAlignment& alignment = alignments_[i];
+    if (alignment.state != FeatureAlignment::State::kFound) continue;
+    motions.push_back(
+        {alignment.position, alignment.motion.offset, (alignment.motion.flow - alignment.start.flow) / kFlowShare});
+  }
+  return evo::FindJolt(motions, ego_motion_.lens());
 }
 
 PatchMotion FeatureTracker::Predict(const TrackedFeature& feature, double step_s, Eigen::Vector2d* position) const {
@@ -95,53 +113,65 @@ PatchMotion FeatureTracker::Predict(const TrackedFeature& feature, double step_s
   return motion;
 }
 
-bool FeatureTracker::Align(const EventHistory& history, TimeNs t, TrackedFeature* feature) const {
-  thread_local LocalEvents events;
-  const double step_s = ToSeconds(t - *last_);
-  Eigen::Vector2d position;
-  const PatchMotion start = Predict(*feature, step_s, &position);
+void FeatureTracker::Align(const EventHistory& history, TimeNs t, const Jolt& jolt, const TrackedFeature& feature,
+                           FeatureAlignment* alignment) const {
+  FeatureAlignment& a = *alignment;
+  a.state = FeatureAlignment::State::kLost;
+  a.start = Predict(feature, ToSeconds(t - *last_), &a.position);
+  const auto& by_rotation = ego_motion_.lens().At(a.position).by_rotation;
+  a.position += by_rotation * jolt.turn;
+  a.start.flow += by_rotation * jolt.turn_rate;
   const auto gather = [&] {
-    history.Gather({t, position.x(), position.y(), start.flow.x(), start.flow.y(),
-                    static_cast<double>(options_.patch_radius_px), feature->half_window},
-                   &events);
-    return events.size();
+    history.Gather({t, a.position.x(), a.position.y(), a.start.flow.x(), a.start.flow.y(),
+                    static_cast<double>(options_.patch_radius_px), a.half_window},
+                   &a.events);
+    return a.events.size();
   };
-  feature->half_window = HalfWindow(start.flow, options_.window_motion_px, options_);
+  a.half_window = HalfWindow(a.start.flow, options_.window_motion_px, options_);
   if (gather() < static_cast<std::size_t>(options_.fewest_events)) {
-    feature->half_window = std::min(2 * feature->half_window, FromSeconds(0.5 * options_.longest_window_s));
-    const int fewest = feature->frames < kNewbornFrames ? options_.fewest_events : options_.fewest_events_alive;
-    if (gather() < static_cast<std::size_t>(fewest)) return Rest(start, position, feature);
-  }
-  events.Thin(static_cast<std::size_t>(options_.most_events));
-
-  PatchMotion motion = start;
-  if (!Fit(events, *feature, false, &motion)) {
-    // A jolt: the prediction may lie beyond the fine association's reach.
-    motion = start;
-    if (!Fit(events, *feature, true, &motion)) {
-      const bool is_noise = events.size() < static_cast<std::size_t>(options_.fewest_events);
-      return is_noise && Rest(start, position, feature);
+    a.half_window = std::min(2 * a.half_window, FromSeconds(0.5 * options_.longest_window_s));
+    const int fewest = feature.frames < kNewbornFrames ? options_.fewest_events : options_.fewest_events_alive;
+    if (gather() < static_cast<std::size_t>(fewest)) {
+      if (MayRest(a, feature)) a.state = FeatureAlignment::State::kResting;
+      return;
     }
   }
-  feature->position = position + motion.offset;
-  feature->flow = motion.flow;
-  feature->told_flow = start.flow + (motion.flow - start.flow) / kFlowShare;
-  feature->linear = motion.linear;
-  feature->perspective = motion.perspective;
-  LearnSlope((motion.linear * start.linear.inverse() - Eigen::Matrix2d::Identity()) / step_s, feature);
-  UpdateTemplate(events, motion, feature);
-  return true;
+  a.events.Thin(static_cast<std::size_t>(options_.most_events));
+
+  // In a jolt of its own a feature may lie beyond the fine association's reach.
+  if (Fit(feature, false, &a) || Fit(feature, true, &a)) {
+    a.state = FeatureAlignment::State::kFound;
+  } else if (a.events.size() < static_cast<std::size_t>(options_.fewest_events) && MayRest(a, feature)) {
+    a.state = FeatureAlignment::State::kResting;  // those are noise
+  }
 }
 
-bool FeatureTracker::Rest(const PatchMotion& predicted, const Eigen::Vector2d& position,
-                          TrackedFeature* feature) const {
-  if (feature->frames < kNewbornFrames || predicted.flow.norm() > options_.resting_flow_px_s) return false;
-  feature->position = position;
-  feature->flow = kSlowdown * predicted.flow;
-  feature->told_flow = feature->flow;
-  feature->linear = predicted.linear;
-  feature->perspective = predicted.perspective;
-  return true;
+bool FeatureTracker::MayRest(const FeatureAlignment& alignment, const TrackedFeature& feature) const {
+  return feature.frames >= kNewbornFrames && alignment.start.flow.norm() <= options_.resting_flow_px_s;
+}
+
+bool FeatureTracker::Advance(const FeatureAlignment& alignment, double step_s, TrackedFeature* feature) const {
+  if (alignment.state == FeatureAlignment::State::kLost) return false;
+  const bool is_found = alignment.state == FeatureAlignment::State::kFound;
+  const PatchMotion& start = alignment.start;
+  const PatchMotion& motion = is_found ? alignment.motion : start;
+  ++feature->frames;
+  feature->half_window = alignment.half_window;
+  feature->position = alignment.position + motion.offset;
+  feature->linear = motion.linear;
+  feature->perspective = motion.perspective;
+  if (is_found) {
+    feature->flow = motion.flow;
+    feature->told_flow = start.flow + (motion.flow - start.flow) / kFlowShare;
+    LearnSlope((motion.linear * start.linear.inverse() - Eigen::Matrix2d::Identity()) / step_s, feature);
+    UpdateTemplate(alignment.events, motion, feature);
+  } else {
+    feature->flow = kSlowdown * start.flow;
+    feature->told_flow = feature->flow;
+  }
+  const double b = options_.border_px;
+  const auto& p = feature->position;
+  return p.x() >= b && p.y() >= b && p.x() <= width_ - 1 - b && p.y() <= height_ - 1 - b;
 }
 
 void FeatureTracker::LearnDepths(double step_s) {
@@ -175,29 +205,30 @@ void FeatureTracker::LearnSlope(const Eigen::Matrix2d& unexpected_rate, TrackedF
   if (slope > steepest) feature->slope *= steepest / slope;
 }
 
-bool FeatureTracker::Fit(const LocalEvents& events, const TrackedFeature& feature, bool coarse_first,
-                         PatchMotion* motion) const {
+bool FeatureTracker::Fit(const TrackedFeature& feature, bool coarse_first, FeatureAlignment* alignment) const {
   thread_local AssociationField field;
+  PatchMotion& motion = alignment->motion;
+  motion = alignment->start;
   const auto align = [&](double sigma_px, int iterations, bool with_linear) {
     const auto radius = static_cast<double>(options_.patch_radius_px);
     field.Build(feature.events, sigma_px, options_.outlier_share);
-    return AlignToTemplate(events, field, planes(),
-                           {iterations, radius, ToSeconds(feature.half_window), options_.flow_prior,
-                            options_.affine_prior, field.OwnMoments(feature.events, motion->linear, radius)},
-                           with_linear, motion);
+    return AlignToTemplate(alignment->events, field, planes(),
+                           {iterations, radius, ToSeconds(alignment->half_window), options_.flow_prior,
+                            options_.affine_prior, field.OwnMoments(feature.events, motion.linear, radius)},
+                           with_linear, &motion);
   };
   if (coarse_first) align(options_.coarse_sigma_px, kCoarseIterations, false);
   const AlignmentQuality quality = align(options_.fine_sigma_px, options_.iterations, true);
-  const double scale = feature.scale * std::sqrt(std::abs(motion->linear.determinant()));
+  const double scale = feature.scale * std::sqrt(std::abs(motion.linear.determinant()));
   return quality.inlier_share >= options_.fewest_inliers && quality.residual_px <= options_.largest_residual_px &&
-         motion->offset.norm() <= options_.largest_jump_px && scale < options_.largest_scale &&
+         motion.offset.norm() <= options_.largest_jump_px && scale < options_.largest_scale &&
          scale > 1.0 / options_.largest_scale;
 }
 
 void FeatureTracker::UpdateTemplate(const LocalEvents& events, const PatchMotion& motion,
                                     TrackedFeature* feature) const {
   // A running mean at first, then one that forgets: the patch changes as it comes nearer.
-  const double gain = std::max(options_.template_gain, 1.0 / (feature->frames + 1.0));
+  const double gain = std::max(options_.template_gain, 1.0 / feature->frames);
   feature->events.Scale(static_cast<float>(1.0 - gain));
   thread_local std::optional<DensityMap> window;
   if (!window || window->side() != feature->events.side() || window->planes() != feature->events.planes()) {

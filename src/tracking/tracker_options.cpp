@@ -34,6 +34,8 @@ void Register(Parameters& parameters, TrackerOptions& o) {
   parameters.Add("tracker.affine_prior", &o.affine_prior, 0.0, 1e6, "weight of the predicted affine shape (events)");
   parameters.Add("tracker.template_gain", &o.template_gain, 0.0, 1.0, "share of the newest window in a template");
   parameters.Add("tracker.ego_motion", &o.ego_motion, "predict patches by the camera's own motion");
+  parameters.Add("tracker.follow_jolts", &o.follow_jolts,
+                 "where all turn unexpectedly, align them once more, expecting that");
   parameters.Add("tracker.restore_shake", &o.restore_shake,
                  "give back what windows smooth away when the camera shakes");
   parameters.Add("tracker.use_polarity", &o.use_polarity, "associate events of equal sign only");

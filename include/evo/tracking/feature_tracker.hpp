@@ -11,6 +11,7 @@
 #include "evo/tracking/ego_motion.hpp"
 #include "evo/tracking/em_affine.hpp"
 #include "evo/tracking/flow_field.hpp"
+#include "evo/tracking/jolt.hpp"
 #include "evo/tracking/surface_slope.hpp"
 #include "evo/tracking/tracker.hpp"
 
@@ -33,6 +34,21 @@ struct TrackedFeature {
   Eigen::Vector2d told_flow = Eigen::Vector2d::Zero();    ///< px/s, what those events alone tell
 };
 
+/// Where the events of a frame put a feature.
+struct FeatureAlignment {
+  enum class State {
+    kFound,
+    kResting,  ///< hardly moves and makes no events: it stays where it is predicted to be
+    kLost,
+  };
+  State state = State::kLost;
+  Eigen::Vector2d position;  ///< predicted, px: `start` and `motion` are relative to it
+  PatchMotion start;         ///< predicted
+  PatchMotion motion;        ///< aligned
+  TimeNs half_window = 0;
+  LocalEvents events;
+};
+
 /// Tracks features by expectation maximisation. The positions reported are those at the very instant of the event
 /// frame, whatever the window of each feature.
 class FeatureTracker : public Tracker {
@@ -48,16 +64,18 @@ class FeatureTracker : public Tracker {
 
  private:
   std::vector<FlowSample> Flows() const;
-  /// False if the feature is lost.
-  bool Track(const EventHistory& history, TimeNs t, TrackedFeature* feature) const;
+  void Track(const EventHistory& history, TimeNs t);
   /// How a feature probably lies in the sensor `step_s` after the last frame, relative to the `position` returned.
   PatchMotion Predict(const TrackedFeature& feature, double step_s, Eigen::Vector2d* position) const;
-  bool Align(const EventHistory& history, TimeNs t, TrackedFeature* feature) const;
-  /// A feature that hardly moves makes no events, as when the car stops: it stays where it is predicted to be. False if
-  /// it moves too fast for that.
-  bool Rest(const PatchMotion& predicted, const Eigen::Vector2d& position, TrackedFeature* feature) const;
-  /// Aligns `events` to the feature's template from `motion`; false if they do not fit it.
-  bool Fit(const LocalEvents& events, const TrackedFeature& feature, bool coarse_first, PatchMotion* motion) const;
+  void Align(const EventHistory& history, TimeNs t, const Jolt& jolt, const TrackedFeature& feature,
+             FeatureAlignment* alignment) const;
+  void AlignAll(const EventHistory& history, TimeNs t, const Jolt& jolt);
+  Jolt FindJolt() const;
+  /// Aligns the events to the feature's template from `start`; false if they do not fit it.
+  bool Fit(const TrackedFeature& feature, bool coarse_first, FeatureAlignment* alignment) const;
+  bool MayRest(const FeatureAlignment& alignment, const TrackedFeature& feature) const;
+  /// False if the feature is lost.
+  bool Advance(const FeatureAlignment& alignment, double step_s, TrackedFeature* feature) const;
   /// Of all features, and from them the slopes of the planes that they lie on.
   void LearnDepths(double step_s);
   std::vector<DepthSample> Depths() const;
@@ -82,6 +100,7 @@ class FeatureTracker : public Tracker {
   double usual_information_ = 0.0;  // of features at birth, those included that were not good enough
   std::int64_t births_ = 0;         // that it is the mean of
   std::vector<TrackedFeature> features_;
+  std::vector<FeatureAlignment> alignments_;  // of the features, in their order; some more are kept for their memory
   std::int64_t next_id_ = 0;
   std::optional<TimeNs> last_;
   bool detected_ = false;
