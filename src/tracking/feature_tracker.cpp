@@ -164,7 +164,7 @@ bool FeatureTracker::Advance(const FeatureAlignment& alignment, double step_s, T
     feature->flow = motion.flow;
     feature->told_flow = start.flow + (motion.flow - start.flow) / kFlowShare;
     LearnSlope((motion.linear * start.linear.inverse() - Eigen::Matrix2d::Identity()) / step_s, feature);
-    UpdateTemplate(alignment.events, motion, feature);
+    UpdateTemplate(alignment.events, motion, step_s, feature);
   } else {
     feature->flow = kSlowdown * start.flow;
     feature->told_flow = feature->flow;
@@ -225,10 +225,12 @@ bool FeatureTracker::Fit(const TrackedFeature& feature, bool coarse_first, Featu
          scale > 1.0 / options_.largest_scale;
 }
 
-void FeatureTracker::UpdateTemplate(const LocalEvents& events, const PatchMotion& motion,
+void FeatureTracker::UpdateTemplate(const LocalEvents& events, const PatchMotion& motion, double step_s,
                                     TrackedFeature* feature) const {
-  // A running mean at first, then one that forgets: the patch changes as it comes nearer.
-  const double gain = std::max(options_.template_gain, 1.0 / feature->frames);
+  // A running mean at first, then one that forgets: the patch changes as it comes nearer. A window that mostly repeats
+  // the last one has little news, and all that it would add is its own error of alignment.
+  const double news = std::min(1.0, step_s / (2.0 * ToSeconds(feature->half_window)));
+  const double gain = std::max(1.0 - std::pow(1.0 - options_.template_gain, news), 1.0 / feature->frames);
   feature->events.Scale(static_cast<float>(1.0 - gain));
   thread_local std::optional<DensityMap> window;
   if (!window || window->side() != feature->events.side() || window->planes() != feature->events.planes()) {

@@ -32,7 +32,8 @@ void Register(Parameters& parameters, TrackerOptions& o) {
   parameters.Add("tracker.iterations", &o.iterations, 1, 200, "of each expectation maximisation, at most");
   parameters.Add("tracker.flow_prior", &o.flow_prior, 0.0, 1e6, "weight of the predicted flow (events)");
   parameters.Add("tracker.affine_prior", &o.affine_prior, 0.0, 1e6, "weight of the predicted affine shape (events)");
-  parameters.Add("tracker.template_gain", &o.template_gain, 0.0, 1.0, "share of the newest window in a template");
+  parameters.Add("tracker.template_gain", &o.template_gain, 0.0, 1.0,
+                 "share of the newest window in a template, less where windows overlap");
   parameters.Add("tracker.ego_motion", &o.ego_motion, "predict patches by the camera's own motion");
   parameters.Add("tracker.follow_jolts", &o.follow_jolts,
                  "where all turn unexpectedly, align them once more, expecting that");

@@ -81,7 +81,8 @@ class FeatureTracker : public Tracker {
   std::vector<DepthSample> Depths() const;
   /// `unexpected_rate`: by how much the patch changed faster than its plane's slope made expect, 1/s.
   void LearnSlope(const Eigen::Matrix2d& unexpected_rate, TrackedFeature* feature) const;
-  void UpdateTemplate(const LocalEvents& events, const PatchMotion& motion, TrackedFeature* feature) const;
+  void UpdateTemplate(const LocalEvents& events, const PatchMotion& motion, double step_s,
+                      TrackedFeature* feature) const;
 
   // In feature_birth.cpp.
   void Refill(const EventHistory& history, TimeNs t);

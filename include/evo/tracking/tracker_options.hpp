@@ -42,7 +42,7 @@ struct TrackerOptions {
   int iterations = 20;           ///< at most, each EM
   double flow_prior = 8.0;       ///< weight, in events, of the predicted flow
   double affine_prior = 20.0;    ///< weight, in events, of the predicted affine shape
-  double template_gain = 0.1;    ///< share of the newest window in a template that has settled
+  double template_gain = 0.1;    ///< share of a window in a template that has settled; less if it overlaps the last
   bool ego_motion = true;        ///< let the camera's own motion predict how patches move, grow and bend
   bool follow_jolts = true;      ///< where all turn unexpectedly, align them once more, expecting that
   bool restore_shake = true;     ///< give back to the positions what windows smooth away while the camera shakes
