@@ -151,7 +151,8 @@ TEST_F(PaperConfigurationTest, FollowsTheBundledStreet) {
             0)
       << err;
   const std::string manifest = ReadFile(folder / "paper/manifest.json");
-  for (const std::string key : {"ego_motion", "restore_shake", "window_refinement", "final_refinement", "refine"}) {
+  for (const std::string key :
+       {"ego_motion", "follow_jolts", "restore_shake", "window_refinement", "final_refinement", "refine"}) {
     EXPECT_NE(manifest.find("\"" + key + "\": false"), std::string::npos) << key;
   }
   EXPECT_NE(out.find("coverage 100.0 %"), std::string::npos) << out;
