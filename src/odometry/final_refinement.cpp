@@ -22,6 +22,8 @@ constexpr int kFewestSightings = 3;         // of a point worth keeping
 constexpr double kCauchyEfficient = 2.385;  // 95 % efficiency under Gaussian noise
 constexpr double kUncertain = 3.0;          // times the usual standard deviation
 constexpr double kSmallestInverseDepth = 1e-9;
+// Share of the points that must agree in a frame between two of the bundle: at a stop most may be on others' cars.
+constexpr double kFewestBetween = 0.35;
 
 /// Leaves out the tracks that mostly contradict the motion: things that move by themselves, and slips.
 void DropContradictions(BundleProblem* problem) {
@@ -74,7 +76,11 @@ class RefinedPoints {
     return optimizer_.Optimize(observations, start);
   }
 
-  bool Accepts(const PoseEstimate& estimate) const { return optimizer_.Accepts(estimate); }
+  static bool Accepts(const PoseEstimate& estimate, double fewest_inliers) {
+    PoseOptions options;
+    options.min_inlier_ratio = fewest_inliers;
+    return PoseOptimizer(options).Accepts(estimate);
+  }
 
  private:
   struct Piece {
@@ -131,7 +137,7 @@ class PoseFiller {
   void Extend(int frame, int end, int direction, SE3 start, const Matrix6d& of_start) {
     const double usual = Median(turns_);
     for (; frame != end; frame += direction) {
-      if (!Estimate(frame, start, of_start)) return;
+      if (!Estimate(frame, start, of_start, PoseOptions().min_inlier_ratio)) return;
       if (turns_.back() > kUncertain * usual) {
         poses_.erase(frame);
         return;
@@ -140,10 +146,10 @@ class PoseFiller {
     }
   }
 
-  /// `start` is the pose of a frame of the bundle nearby.
-  bool Estimate(int frame, const SE3& start, const Matrix6d& of_start) {
+  /// `start` is the pose of a frame of the bundle nearby; false if less than a share of its points agree with any pose.
+  bool Estimate(int frame, const SE3& start, const Matrix6d& of_start, double fewest_inliers) {
     const PoseEstimate estimate = points_.EstimatePose(frames_, frame, start);
-    if (!points_.Accepts(estimate)) return false;
+    if (!RefinedPoints::Accepts(estimate, fewest_inliers)) return false;
     // The points are as uncertain as the bundle's poses nearby.
     poses_[frame] = {estimate.T_cam_world, estimate.inlier_count, of_start + estimate.covariance};
     turns_.push_back(Turn(estimate));
@@ -223,7 +229,9 @@ void RefineSegment(const FinalRefinementOptions& options, const std::vector<Fram
     const int frame = segment->frames[run.frames[k]];
     filler.Keep(frame, poses[k], covariances[k]);
     const int next = k + 1 < end ? segment->frames[run.frames[k + 1]] : end_frame;
-    for (int between = frame + 1; between < next; ++between) filler.Estimate(between, poses[k], covariances[k]);
+    for (int between = frame + 1; between < next; ++between) {
+      filler.Estimate(between, poses[k], covariances[k], kFewestBetween);
+    }
   }
   if (first == 0) filler.Extend(segment->frames.front() - 1, before - 1, -1, poses.front(), covariances.front());
   if (end == poses.size()) filler.Extend(segment->frames.back() + 1, after, 1, poses.back(), covariances.back());

@@ -136,6 +136,27 @@ TEST(Odometry, StandstillIsNotMotion) {
   }
 }
 
+TEST(Odometry, AtAStopAFewPointsThatRestAreEnough) {
+  Drive drive = MakeDrive({.seed = 7});
+  // While it stands, most of what it sees sits on cars that drive off.
+  const TimeNs begin = drive.truth.front().t + FromSeconds(5.8), end = begin + FromSeconds(0.5);
+  for (auto& o : drive.tracks) {
+    if (o.t < begin || o.id % 50 >= 31) continue;
+    if (o.t <= end) {
+      o.x += (o.id % 2 ? 150.0 : -90.0) * ToSeconds(o.t - begin);
+    } else {
+      o.id += 1000000;  // another feature, behind the car
+    }
+  }
+  std::ranges::stable_sort(drive.tracks, {}, [](const auto& o) { return std::pair(o.t, o.id); });
+  const auto result = Estimate(drive);
+  EXPECT_EQ(result.bootstraps.size(), 1u);
+  const Accuracy accuracy = Evaluate(result.trajectory, drive.truth);
+  EXPECT_EQ(accuracy.coverage, 1.0);
+  EXPECT_LT(accuracy.planar_percent, 0.6);
+  EXPECT_LT(accuracy.rotation_degrees, 1.2);
+}
+
 TEST(Odometry, SaysThatThereAreTooFewTracks) {
   const Drive drive = MakeDrive({.seconds = 3.0, .features = 10, .stop = false});
   try {
