@@ -282,7 +282,7 @@ plot_errors() {
     }' "$out/$1_summary.csv" >"$out/$name.dat"
   scenes=$(($(wc -l <"$out/$name.dat") - 1))
   cat >"$out/$name.gnuplot" <<END
-set terminal svg size $((200 + scenes * (40 + 20 * ${#labels[@]}))),450 noenhanced background "white"
+set terminal svg size $((360 + scenes * (40 + 20 * ${#labels[@]}))),450 noenhanced background "white"
 set output "$name.svg"
 set datafile separator ","
 set datafile missing "?"
