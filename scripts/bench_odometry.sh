@@ -21,6 +21,7 @@ ablations=(
   odometry.window_refinement=false
   odometry.bootstrap.refine=false
   odometry.key_frame.every_frames=5
+  odometry.depth_filter.old_key_frames=0
   odometry.max_outliers=1000
   tracker.ego_motion=false
   tracker.follow_jolts=false

@@ -23,6 +23,8 @@ void Register(Parameters& parameters, MapperOptions& options) {
   parameters.Add("odometry.loss_px", &options.loss_px, 0.05, 20, "width of the robust loss in px");
   parameters.Add("odometry.depth_filter.update_px", &options.update_px, 0, 20,
                  "image motion in px between two updates of the depth filter");
+  parameters.Add("odometry.depth_filter.old_key_frames", &options.old_key_frames, 0, 100,
+                 "earlier key frames that a new seed is measured with");
   parameters.Add("odometry.max_outliers", &options.max_outliers, 1, 1000,
                  "frames that must contradict a point before it may be dropped");
   Register(parameters, options.depth_filter);
@@ -103,6 +105,7 @@ void Mapper::AddKeyFrame(const Frame& frame, MapUpdate* update) {
   }
   filter_.DropOld(newest);
   SowSeeds(map_.key_frames.back());
+  AddConverged(update);
 }
 
 SceneDepth Mapper::DepthOfScene(const Frame& frame) const {
@@ -115,14 +118,21 @@ SceneDepth Mapper::DepthOfScene(const Frame& frame) const {
   return MeasureSceneDepth(std::move(depths));
 }
 
-/// A seed for every feature that has neither a point nor a seed.
+/// A seed for every feature that has neither a point nor a seed, measured with the key frames that saw it before.
 void Mapper::SowSeeds(const Frame& frame) {
   const SceneDepth depth = DepthOfScene(frame);
   if (!(depth.near > 0.0)) return;
   const int newest = static_cast<int>(map_.key_frames.size()) - 1;
+  Frame sown;
   for (const Feature& feature : frame.features) {
     if (map_.Find(feature.track) || filter_.Has(feature.track)) continue;
     filter_.AddSeed(feature, newest, depth.median, kNearestShare * depth.near);
+    sown.features.push_back(feature);
+  }
+  for (int i = newest - 1; i >= std::max(segment_begin_, newest - options_.old_key_frames); --i) {
+    Frame old = map_.key_frames[i];
+    std::erase_if(old.features, [&](const Feature& feature) { return !sown.Find(feature.track); });
+    filter_.Update(old, [&](int key) { return old.T_cam_world * map_.key_frames[key].T_cam_world.Inverse(); });
   }
 }
 

@@ -102,6 +102,23 @@ TEST(Mapper, GrowsTheMapAndDropsWhatFramesContradict) {
   EXPECT_EQ(mapper.map().key_frames.size(), 12u);
 }
 
+TEST(Mapper, OldKeyFramesBringPointsEarlier) {
+  std::vector<std::size_t> points;
+  for (const int old_key_frames : {0, 6}) {
+    MapperOptions options;
+    options.old_key_frames = old_key_frames;
+    options.depth_filter.max_age = 1;  // most seeds are given up and sown again
+    options.depth_filter.convergence = 500.0;
+    Mapper mapper(options, 1.0 / 226.0);
+    points.push_back(0);
+    for (const auto& message : Messages(60)) {
+      mapper.Process(message);
+      points.back() += mapper.map().points.size();
+    }
+  }
+  EXPECT_GT(points[1], points[0]);  // sums over the frames
+}
+
 TEST(MappingThread, GivesTheSameUpdatesAsWithoutAThread) {
   const auto messages = Messages(40);
   std::vector<std::vector<MapUpdate>> runs;

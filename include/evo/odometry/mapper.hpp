@@ -18,6 +18,7 @@ struct MapperOptions {
   int window_iterations = 6;
   double loss_px = 1.0;    ///< width of Cauchy's loss
   double update_px = 1.0;  ///< image motion between two updates of the depth filter
+  int old_key_frames = 6;  ///< that a new seed is measured with
   int max_outliers = 4;    ///< contradictions after which a point may be dropped
   DepthFilterOptions depth_filter;
 };
