@@ -76,10 +76,8 @@ class RefinedPoints {
     return optimizer_.Optimize(observations, start);
   }
 
-  static bool Accepts(const PoseEstimate& estimate, double fewest_inliers) {
-    PoseOptions options;
-    options.min_inlier_ratio = fewest_inliers;
-    return PoseOptimizer(options).Accepts(estimate);
+  bool Accepts(const PoseEstimate& estimate, double min_inlier_ratio) const {
+    return optimizer_.Accepts(estimate, min_inlier_ratio);
   }
 
  private:
@@ -147,9 +145,9 @@ class PoseFiller {
   }
 
   /// `start` is the pose of a frame of the bundle nearby; false if less than a share of its points agree with any pose.
-  bool Estimate(int frame, const SE3& start, const Matrix6d& of_start, double fewest_inliers) {
+  bool Estimate(int frame, const SE3& start, const Matrix6d& of_start, double min_inlier_ratio) {
     const PoseEstimate estimate = points_.EstimatePose(frames_, frame, start);
-    if (!RefinedPoints::Accepts(estimate, fewest_inliers)) return false;
+    if (!points_.Accepts(estimate, min_inlier_ratio)) return false;
     // The points are as uncertain as the bundle's poses nearby.
     poses_[frame] = {estimate.T_cam_world, estimate.inlier_count, of_start + estimate.covariance};
     turns_.push_back(Turn(estimate));

@@ -108,9 +108,9 @@ PoseEstimate PoseOptimizer::Optimize(std::span<const PoseObservation> observatio
   return result;
 }
 
-bool PoseOptimizer::Accepts(const PoseEstimate& estimate) const {
+bool PoseOptimizer::Accepts(const PoseEstimate& estimate, double min_inlier_ratio) const {
   return estimate.inlier_count >= options_.min_inliers &&
-         estimate.inlier_count >= options_.min_inlier_ratio * static_cast<double>(estimate.inliers.size());
+         estimate.inlier_count >= min_inlier_ratio * static_cast<double>(estimate.inliers.size());
 }
 
 }  // namespace evo

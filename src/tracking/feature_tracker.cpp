@@ -19,6 +19,11 @@ constexpr double kSteepest = 1e-3;     // such a slope for a flow of 1 px/s, 1/p
 constexpr double kRebaseScale = 1.25;  // re-sample the template when the patch has grown or shrunk this much,
 constexpr double kRebaseBend = 0.25;   // or its depth varies by this share from its centre to its edge
 
+/// By how much the flow that the events alone tell differs from the predicted one, px/s.
+Eigen::Vector2d UnexpectedFlow(const FeatureAlignment& alignment) {
+  return (alignment.motion.flow - alignment.start.flow) / kFlowShare;
+}
+
 }  // namespace
 
 FeatureTracker::FeatureTracker(const Camera& camera, const TrackerOptions& options, ThreadPool* pool)
@@ -67,7 +72,7 @@ std::vector<ObservedWindow> FeatureTracker::Windows() const {
 void FeatureTracker::Track(const EventHistory& history, TimeNs t) {
   AlignAll(history, t, {});
   if (options_.follow_jolts) {
-    const Jolt jolt = FindJolt();
+    const Jolt jolt = FindJolt(UnexpectedMotions());
     if (jolt.motion_px > kJoltPx) AlignAll(history, t, jolt);
   }
   const double step_s = ToSeconds(t - *last_);
@@ -89,15 +94,14 @@ void FeatureTracker::AlignAll(const EventHistory& history, TimeNs t, const Jolt&
       features_.size(), [&](std::size_t i) { Align(history, t, jolt, features_[i], &alignments_[i]); }, 4);
 }
 
-Jolt FeatureTracker::FindJolt() const {
+std::vector<UnexpectedMotion> FeatureTracker::UnexpectedMotions() const {
   std::vector<UnexpectedMotion> motions;
   for (std::size_t i = 0; i < features_.size(); ++i) {
     const FeatureAlignment& alignment = alignments_[i];
     if (alignment.state != FeatureAlignment::State::kFound) continue;
-    motions.push_back(
-        {alignment.position, alignment.motion.offset, (alignment.motion.flow - alignment.start.flow) / kFlowShare});
+    motions.push_back({alignment.by_rotation, alignment.motion.offset, UnexpectedFlow(alignment)});
   }
-  return evo::FindJolt(motions, ego_motion_.lens());
+  return motions;
 }
 
 PatchMotion FeatureTracker::Predict(const TrackedFeature& feature, double step_s, Eigen::Vector2d* position) const {
@@ -118,9 +122,9 @@ void FeatureTracker::Align(const EventHistory& history, TimeNs t, const Jolt& jo
   FeatureAlignment& a = *alignment;
   a.state = FeatureAlignment::State::kLost;
   a.start = Predict(feature, ToSeconds(t - *last_), &a.position);
-  const auto& by_rotation = ego_motion_.lens().At(a.position).by_rotation;
-  a.position += by_rotation * jolt.turn;
-  a.start.flow += by_rotation * jolt.turn_rate;
+  a.by_rotation = ego_motion_.lens().At(a.position).by_rotation;
+  a.position += a.by_rotation * jolt.turn;
+  a.start.flow += a.by_rotation * jolt.turn_rate;
   const auto gather = [&] {
     history.Gather({t, a.position.x(), a.position.y(), a.start.flow.x(), a.start.flow.y(),
                     static_cast<double>(options_.patch_radius_px), a.half_window},
@@ -162,7 +166,7 @@ bool FeatureTracker::Advance(const FeatureAlignment& alignment, double step_s, T
   feature->perspective = motion.perspective;
   if (is_found) {
     feature->flow = motion.flow;
-    feature->told_flow = start.flow + (motion.flow - start.flow) / kFlowShare;
+    feature->told_flow = start.flow + UnexpectedFlow(alignment);
     LearnSlope((motion.linear * start.linear.inverse() - Eigen::Matrix2d::Identity()) / step_s, feature);
     UpdateTemplate(alignment.events, motion, step_s, feature);
   } else {

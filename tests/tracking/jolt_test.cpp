@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "evo/geometry/known_cameras.hpp"
+#include "evo/tracking/lens_grid.hpp"
 
 namespace evo {
 namespace {
@@ -24,7 +25,7 @@ std::vector<UnexpectedMotion> Motions(const LensGrid& lens, int count, double no
   for (int i = 0; i < count; ++i) {
     const Vector2d position(173.0 + 150.0 * uniform(random), 130.0 + 110.0 * uniform(random));
     const auto& by_rotation = lens.At(position).by_rotation;
-    motions.push_back({position, by_rotation * kTurn + noise(), by_rotation * kTurnRate + 20.0 * noise()});
+    motions.push_back({by_rotation, by_rotation * kTurn + noise(), by_rotation * kTurnRate + 20.0 * noise()});
   }
   return motions;
 }
@@ -32,7 +33,7 @@ std::vector<UnexpectedMotion> Motions(const LensGrid& lens, int count, double no
 TEST(Jolt, IsTheTurnThatAllShare) {
   const LensGrid lens{Camera(MvsecDavis346())};
   const auto motions = Motions(lens, 60, 0.0, 1);
-  const Jolt jolt = FindJolt(motions, lens);
+  const Jolt jolt = FindJolt(motions);
   EXPECT_LT((jolt.turn - kTurn).norm(), 1e-4);
   EXPECT_LT((jolt.turn_rate - kTurnRate).norm(), 1e-3);
   double squares = 0.0;
@@ -46,7 +47,7 @@ TEST(Jolt, WithstandsNoiseAndFeaturesThatWentAstray) {
     auto motions = Motions(lens, 100, 0.5, seed);
     for (std::size_t i = 0; i < 20; ++i) motions[5 * i].offset = Vector2d(6.0, 0.0);
     for (std::size_t i = 0; i < 20; ++i) motions[5 * i].flow = Vector2d(-200.0, 100.0);
-    const Jolt jolt = FindJolt(motions, lens);
+    const Jolt jolt = FindJolt(motions);
     EXPECT_LT((jolt.turn - kTurn).norm(), 0.003) << seed;
     EXPECT_LT((jolt.turn_rate - kTurnRate).norm(), 0.06) << seed;
   }
@@ -54,7 +55,7 @@ TEST(Jolt, WithstandsNoiseAndFeaturesThatWentAstray) {
 
 TEST(Jolt, IsNoneWithTooFewFeatures) {
   const LensGrid lens{Camera(MvsecDavis346())};
-  const Jolt jolt = FindJolt(Motions(lens, 8, 0.0, 1), lens);
+  const Jolt jolt = FindJolt(Motions(lens, 8, 0.0, 1));
   EXPECT_EQ(jolt.motion_px, 0.0);
   EXPECT_TRUE(jolt.turn.isZero(0.0));
   EXPECT_TRUE(jolt.turn_rate.isZero(0.0));

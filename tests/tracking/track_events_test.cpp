@@ -30,6 +30,33 @@ TrackingResult TrackAll(const EventColumns& events, int threads, const TrackerOp
   return TrackEvents(&reader, evo::testing::SceneCamera(), options, &pool, {});
 }
 
+using TracksById = std::map<std::int64_t, std::vector<TrackObservation>>;
+
+TracksById ById(const Tracks& tracks) {
+  TracksById by_id;
+  for (const auto& observation : tracks) by_id[observation.id].push_back(observation);
+  return by_id;
+}
+
+/// From begin to end of the tracks that live from `born_by_s` to `alive_at_s` in a scene that moves so, px.
+std::vector<Vector2d> Errors(const TracksById& tracks, const Motion& moved, double born_by_s, double alive_at_s) {
+  std::vector<Vector2d> errors;
+  for (const auto& [id, track] : tracks) {
+    const auto &first = track.front(), &last = track.back();
+    if (ToSeconds(first.t) > born_by_s || ToSeconds(last.t) < alive_at_s) continue;
+    errors.push_back(Vector2d(last.x - first.x, last.y - first.y) -
+                     (moved(ToSeconds(last.t)) - moved(ToSeconds(first.t))));
+  }
+  return errors;
+}
+
+double MedianNorm(const std::vector<Vector2d>& errors) {
+  std::vector<double> norms;
+  for (const auto& error : errors) norms.push_back(error.norm());
+  std::ranges::sort(norms);
+  return norms[norms.size() / 2];
+}
+
 class TrackEventsTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -48,25 +75,12 @@ EventColumns* TrackEventsTest::events = nullptr;
 TrackingResult* TrackEventsTest::result = nullptr;
 
 TEST_F(TrackEventsTest, TracksFollowASceneThatTurnsBack) {
-  std::map<std::int64_t, std::vector<TrackObservation>> tracks;
-  for (const auto& observation : result->tracks) tracks[observation.id].push_back(observation);
-  std::vector<double> errors;
+  const std::vector<Vector2d> errors = Errors(ById(result->tracks), ThereAndBack, 0.3, 0.35);
+  ASSERT_GE(errors.size(), 10u);
   Vector2d mean = Vector2d::Zero();
-  int both_ways = 0;
-  for (const auto& [id, track] : tracks) {
-    const auto& first = track.front();
-    const auto& last = track.back();
-    if (ToSeconds(first.t) > 0.3 || ToSeconds(last.t) < 0.35) continue;
-    ++both_ways;
-    const Vector2d moved(last.x - first.x, last.y - first.y);
-    const Vector2d error = moved - (ThereAndBack(ToSeconds(last.t)) - ThereAndBack(ToSeconds(first.t)));
-    errors.push_back(error.norm());
-    mean += error;
-  }
-  ASSERT_GE(both_ways, 10);
-  std::ranges::sort(errors);
-  EXPECT_LT(errors[errors.size() / 2], 0.3);
-  EXPECT_LT((mean / both_ways).norm(), 0.4);
+  for (const auto& error : errors) mean += error / static_cast<double>(errors.size());
+  EXPECT_LT(MedianNorm(errors), 0.3);
+  EXPECT_LT(mean.norm(), 0.4);
 }
 
 /// How far ahead of the nearest cross features lie, px along the scene's constant velocity, in the median: some are on
@@ -103,7 +117,7 @@ TEST(TrackEvents, FeaturesOutliveAStop) {
     const auto ramp = [](double s) { return s < 0.0 ? 0.0 : s < 0.2 ? 2.5 * s * s : 0.1 + s - 0.2; };
     return Vector2d(kFast * (t - ramp(t - 0.3) + ramp(t - 0.9)), 0.0);
   };
-  std::vector<double> errors;
+  std::vector<Vector2d> errors;
   for (const unsigned seed : {4, 5, 6}) {
     const EventColumns all = CrossScene(60, seed).Events(moved, 1.2, 1000.0);
     EventColumns events;
@@ -112,22 +126,19 @@ TEST(TrackEvents, FeaturesOutliveAStop) {
       const double speed = (moved(t + 0.001) - moved(t - 0.001)).norm() / 0.002;
       if (speed > 10.0) events.push_back(all.t[i], all.x[i], all.y[i], all.polarity[i]);
     }
-    std::map<std::int64_t, std::vector<TrackObservation>> tracks;
-    for (const auto& observation : TrackAll(events, 2).tracks) tracks[observation.id].push_back(observation);
+    const TracksById tracks = ById(TrackAll(events, 2).tracks);
+    for (const auto& error : Errors(tracks, moved, 0.4, 1.05)) errors.push_back(error);
     for (const auto& [id, track] : tracks) {
       if (ToSeconds(track.front().t) > 0.4 || ToSeconds(track.back().t) < 1.05) continue;
-      const Vector2d shift(track.back().x - track.front().x, track.back().y - track.front().y);
-      errors.push_back((shift - (moved(ToSeconds(track.back().t)) - moved(ToSeconds(track.front().t)))).norm());
       for (std::size_t i = 1; i < track.size(); ++i) EXPECT_EQ(track[i].t - track[i - 1].t, FromSeconds(0.02));
     }
   }
   ASSERT_GE(errors.size(), 15u);
-  std::ranges::sort(errors);
-  EXPECT_LT(errors[errors.size() / 2], 0.2);
+  EXPECT_LT(MedianNorm(errors), 0.2);
 }
 
-/// Errors of the tracks that live from before to after a bump, px.
-std::vector<double> ErrorsOverABump(bool follow_jolts) {
+/// Of the tracks that live from before to after a bump, px.
+std::vector<Vector2d> ErrorsOverABump(bool follow_jolts) {
   // Along at 40 px/s, and besides 22 px up within 60 ms and back within 160 ms.
   const auto moved = [](double t) {
     const double s = t - 0.3;
@@ -136,22 +147,13 @@ std::vector<double> ErrorsOverABump(bool follow_jolts) {
   };
   TrackerOptions options;
   options.follow_jolts = follow_jolts;
-  std::map<std::int64_t, std::vector<TrackObservation>> tracks;
   const TrackingResult tracked = TrackAll(CrossScene(120, 4).Events(moved, 0.7, 1000.0), 2, options);
-  for (const auto& observation : tracked.tracks) tracks[observation.id].push_back(observation);
-  std::vector<double> errors;
-  for (const auto& [id, track] : tracks) {
-    const auto &first = track.front(), &last = track.back();
-    if (ToSeconds(first.t) > 0.25 || ToSeconds(last.t) < 0.6) continue;
-    const Vector2d truth = moved(ToSeconds(last.t)) - moved(ToSeconds(first.t));
-    errors.push_back((Vector2d(last.x - first.x, last.y - first.y) - truth).norm());
-  }
-  return errors;
+  return Errors(ById(tracked.tracks), moved, 0.25, 0.6);
 }
 
 TEST(TrackEvents, FeaturesFollowAJolt) {
-  const auto is_astray = [](double error) { return error > 1.0; };
-  const std::vector<double> errors = ErrorsOverABump(true);
+  const auto is_astray = [](const Vector2d& error) { return error.norm() > 1.0; };
+  const std::vector<Vector2d> errors = ErrorsOverABump(true);
   EXPECT_GE(errors.size(), 8u);
   EXPECT_EQ(std::ranges::count_if(errors, is_astray), 0);
   EXPECT_GE(std::ranges::count_if(ErrorsOverABump(false), is_astray), 2);  // they take a neighbour for themselves

@@ -51,7 +51,8 @@ class PoseOptimizer {
   PoseEstimate Optimize(std::span<const PoseObservation> observations, const SE3& start) const;
 
   /// Whether there are inliers enough to believe the pose.
-  bool Accepts(const PoseEstimate& estimate) const;
+  bool Accepts(const PoseEstimate& estimate) const { return Accepts(estimate, options_.min_inlier_ratio); }
+  bool Accepts(const PoseEstimate& estimate, double min_inlier_ratio) const;
 
  private:
   PoseOptions options_;

@@ -42,9 +42,10 @@ struct FeatureAlignment {
     kLost,
   };
   State state = State::kLost;
-  Eigen::Vector2d position;  ///< predicted, px: `start` and `motion` are relative to it
-  PatchMotion start;         ///< predicted
-  PatchMotion motion;        ///< aligned
+  Eigen::Vector2d position;                 ///< predicted, px: `start` and `motion` are relative to it
+  Eigen::Matrix<double, 2, 3> by_rotation;  ///< there, see PixelGeometry
+  PatchMotion start;                        ///< predicted
+  PatchMotion motion;                       ///< aligned
   TimeNs half_window = 0;
   LocalEvents events;
 };
@@ -70,7 +71,7 @@ class FeatureTracker : public Tracker {
   void Align(const EventHistory& history, TimeNs t, const Jolt& jolt, const TrackedFeature& feature,
              FeatureAlignment* alignment) const;
   void AlignAll(const EventHistory& history, TimeNs t, const Jolt& jolt);
-  Jolt FindJolt() const;
+  std::vector<UnexpectedMotion> UnexpectedMotions() const;
   /// Aligns the events to the feature's template from `start`; false if they do not fit it.
   bool Fit(const TrackedFeature& feature, bool coarse_first, FeatureAlignment* alignment) const;
   bool MayRest(const FeatureAlignment& alignment, const TrackedFeature& feature) const;

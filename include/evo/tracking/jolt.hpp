@@ -3,15 +3,13 @@
 #include <Eigen/Core>
 #include <span>
 
-#include "evo/tracking/lens_grid.hpp"
-
 namespace evo {
 
 /// What a feature did beyond its prediction.
 struct UnexpectedMotion {
-  Eigen::Vector2d position;  ///< predicted, px
-  Eigen::Vector2d offset;    ///< px
-  Eigen::Vector2d flow;      ///< px/s
+  Eigen::Matrix<double, 2, 3> by_rotation;  ///< px for a turn of the world, rad
+  Eigen::Vector2d offset;                   ///< px
+  Eigen::Vector2d flow;                     ///< px/s
 };
 
 /// A turn of the camera that no feature's past foretold, as when a wheel hits a bump: of the world about the camera.
@@ -23,6 +21,6 @@ struct Jolt {
 
 /// The turn and the turn rate that the unexpected motions have in common, by robust linear least squares. None where
 /// there are too few of them.
-Jolt FindJolt(std::span<const UnexpectedMotion> motions, const LensGrid& lens);
+Jolt FindJolt(std::span<const UnexpectedMotion> motions);
 
 }  // namespace evo
