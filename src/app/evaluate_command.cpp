@@ -31,6 +31,9 @@ constexpr char kExamples[] =
     "By evo's rules, relative errors from every pose, only seconds 10 to 40 of the ground truth:\n"
     "  evo-run evaluate --estimate estimate.txt --ground-truth truth.txt --align se3 --association nearest "
     "--rpe 1s,10m --rpe-pairs all --from-stamp 10 --to-stamp 40 --out out/comparison\n"
+    "Is the estimate as uncertain as it says?\n"
+    "  evo-run evaluate --estimate out/trajectory.txt --covariances out/pose_covariance.csv --ground-truth "
+    "outdoor_day2_gt.hdf5 --out out/evaluation\n"
     "KITTI poses, with KITTI's segments of these lengths (m):\n"
     "  evo-run evaluate --estimate 00_estimate.txt --ground-truth 00.txt --align none,sim3 "
     "--set evaluation.kitti_lengths_m=50,100,200 --out out/kitti\n"
@@ -43,6 +46,7 @@ constexpr char kExamples[] =
 struct EvaluateArguments {
   CommonOptions common;
   std::string estimate;
+  std::string covariances;
   std::string ground_truth;
   TrackEvaluationArguments tracks;
   std::string align = "origin-scale,sim3";
@@ -150,9 +154,15 @@ Evaluation EvaluateTrajectory(const EvaluateArguments& arguments, const std::vec
   record->AddInput("estimate", arguments.estimate);
   EvaluationOptions options = config.evaluation;
   const auto [estimate, truth] = record->Time("read", [&] { return ReadInputs(arguments, &options.association); });
+  std::vector<StampedCovariance> covariances;
+  if (!arguments.covariances.empty()) {
+    record->AddInput("covariances", arguments.covariances);
+    covariances = ReadPoseCovariances(arguments.covariances);
+  }
   auto evaluation = record->Time("evaluate", [&] {
-    return NamingPlace(arguments.estimate + " against " + arguments.ground_truth,
-                       [&, &e = estimate, &t = truth] { return Evaluate(t, e, alignments, interval, options); });
+    return NamingPlace(arguments.estimate + " against " + arguments.ground_truth, [&, &e = estimate, &t = truth] {
+      return Evaluate(t, e, alignments, interval, options, covariances);
+    });
   });
   record->AddCount("estimated_poses", estimate.size());
   record->AddCount("true_poses", truth.size());
@@ -252,6 +262,11 @@ Command AddEvaluateCommand(CLI::App& app) {
   parser->add_option("--estimate", arguments->estimate, "estimated trajectory, TUM text or KITTI poses")
       ->type_name("FILE")
       ->needs(ground_truth);
+  parser
+      ->add_option("--covariances", arguments->covariances,
+                   "pose_covariance.csv of the estimate: are its errors as large as it says?")
+      ->type_name("FILE")
+      ->needs("--estimate");
   AddTrackEvaluationOptions(*parser, arguments->tracks, ground_truth);
   AddAlignmentOption(*parser, arguments->align);
   AddComparisonOptions(*parser, *arguments);

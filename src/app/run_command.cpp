@@ -60,8 +60,8 @@ std::vector<std::string> ResultNames(const std::vector<Alignment>& alignments) {
 
 /// `only_determined`: as far as the motion allows. Prints the summary.
 void RunEvaluationStage(StageContext* context, const GroundTruth& truth, const Trajectory& estimate,
-                        const std::vector<TimeNs>& frames, const std::vector<Alignment>& alignments,
-                        bool only_determined) {
+                        const std::vector<StampedCovariance>& covariances, const std::vector<TimeNs>& frames,
+                        const std::vector<Alignment>& alignments, bool only_determined) {
   EvaluationOptions options = context->config.evaluation;
   options.leave_out_undetermined = only_determined;
   const TimeNs offset = FromSeconds(options.association.estimate_clock_offset_s);
@@ -69,7 +69,7 @@ void RunEvaluationStage(StageContext* context, const GroundTruth& truth, const T
   const EvaluationInterval interval{frames.front() + offset, frames.back() + offset};
   NamingPlace((context->options.out / "trajectory.txt").string() + " against " + truth.path.string(), [&] {
     const Evaluation evaluation = context->record.Time(
-        "evaluate", [&] { return Evaluate(truth.trajectory, estimate, alignments, interval, options); });
+        "evaluate", [&] { return Evaluate(truth.trajectory, estimate, alignments, interval, options, covariances); });
     context->record.Time("write_evaluation", [&] {
       WriteEvaluationResults(context->options.out, SequenceName(truth.path), evaluation, !context->options.no_plots,
                              context->record.manifest.rebootstraps);
@@ -101,7 +101,7 @@ void RunAll(const RunArguments& arguments, const std::vector<std::string>& comma
       RunOdometryStage(&context, tracking.result.tracks, out / "tracks.txt", recording.camera);
   std::cout << FormatOdometry(odometry) << FormatSpeed(context.record.manifest, context.pool.size()) << std::flush;
   if (truth) {
-    RunEvaluationStage(&context, *truth, odometry.trajectory, tracking.result.frames, alignments,
+    RunEvaluationStage(&context, *truth, odometry.trajectory, odometry.covariances, tracking.result.frames, alignments,
                        arguments.align.empty());
   }
   context.Finish();

@@ -165,7 +165,7 @@ OdometryResult RunOdometryStage(StageContext* context, const Tracks& tracks, con
   context->record.Time("write_trajectory", [&] {
     WriteTum(context->options.out / "trajectory.txt", result.trajectory);
     if (!result.covariances.empty()) {
-      WritePoseCovariances(context->options.out / "pose_covariance.csv", result.trajectory, result.covariances);
+      WritePoseCovariances(context->options.out / "pose_covariance.csv", result.covariances);
     }
     WriteMap(result.points, context->options.out / "map.ply");
   });

@@ -127,6 +127,11 @@ AlignedEvaluation EvaluateAligned(const Comparison& comparison, const Alignment&
   return result;
 }
 
+bool FitsScale(Alignment::Method method) {
+  using enum Alignment::Method;
+  return method == kOriginScale || method == kScale || method == kSim3;
+}
+
 bool AreDeltas(const std::string& text) {
   try {
     ParseDeltas(text);
@@ -170,7 +175,8 @@ void Register(Parameters& parameters, EvaluationOptions& options) {
 }
 
 Evaluation Evaluate(const Trajectory& truth, const Trajectory& estimate, std::span<const Alignment> alignments,
-                    const EvaluationInterval& interval, const EvaluationOptions& options) {
+                    const EvaluationInterval& interval, const EvaluationOptions& options,
+                    std::span<const StampedCovariance> covariances) {
   if (truth.empty() || estimate.empty()) {
     throw Error(ErrorKind::kNothingToDo, std::string(truth.empty() ? "the ground truth" : "the estimate") +
                                              " holds no poses; check what was written to it");
@@ -203,6 +209,9 @@ Evaluation Evaluate(const Trajectory& truth, const Trajectory& estimate, std::sp
       if (!options.leave_out_undetermined || error.kind() != ErrorKind::kDegenerateAlignment) throw;
       evaluation.left_out.emplace_back(error.what());
     }
+  }
+  if (!covariances.empty()) {
+    evaluation.consistency = MeasureConsistency(comparison.pairs, covariances, FitsScale(alignments.front().method));
   }
   return evaluation;
 }

@@ -33,6 +33,16 @@ std::string NotLater(TimeNs previous, TimeNs t) {
 
 bool IsPlace(const Eigen::Vector3d& position) { return position.cwiseAbs().maxCoeff() <= kFarthest; }
 
+/// Of the table of covariances.
+std::string CovarianceHeader() {
+  constexpr std::array kNames = {"x", "y", "z", "rx", "ry", "rz"};
+  std::string header = "timestamp";
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    for (std::size_t j = i; j < kNames.size(); ++j) header += std::string(",") + kNames[i] + "_" + kNames[j];
+  }
+  return header;
+}
+
 StampedPose ParsePose(const TextLines& lines, std::string_view line) {
   const auto fields = SplitFields(line);
   if (fields.size() != 8) throw lines.Failure("expected 't px py pz qx qy qz qw', found " + Quote(line));
@@ -172,23 +182,47 @@ void WriteTum(const std::filesystem::path& path, const Trajectory& trajectory) {
   file.Commit();
 }
 
-void WritePoseCovariances(const std::filesystem::path& path, const Trajectory& trajectory,
-                          const std::vector<Matrix6d>& covariances) {
-  constexpr std::array kNames = {"x", "y", "z", "rx", "ry", "rz"};
+void WritePoseCovariances(const std::filesystem::path& path, const std::vector<StampedCovariance>& covariances) {
   OutputFile file(path);
-  file.stream() << "timestamp";
-  for (std::size_t i = 0; i < kNames.size(); ++i) {
-    for (std::size_t j = i; j < kNames.size(); ++j) file.stream() << ',' << kNames[i] << '_' << kNames[j];
-  }
-  file.stream() << '\n';
-  for (std::size_t k = 0; k < trajectory.size(); ++k) {
-    file.stream() << FormatTime(trajectory[k].t);
+  file.stream() << CovarianceHeader() << '\n';
+  for (const auto& [t, covariance] : covariances) {
+    file.stream() << FormatTime(t);
     for (Eigen::Index i = 0; i < 6; ++i) {
-      for (Eigen::Index j = i; j < 6; ++j) file.stream() << Format(",%.9g", covariances[k](i, j));
+      for (Eigen::Index j = i; j < 6; ++j) file.stream() << Format(",%.9g", covariance(i, j));
     }
     file.stream() << '\n';
   }
   file.Commit();
+}
+
+std::vector<StampedCovariance> ReadPoseCovariances(const std::filesystem::path& path) {
+  TextLines lines(path);
+  std::string_view line;
+  if (!lines.Next(&line) || line != CovarianceHeader()) {
+    throw Error(ErrorKind::kInput, path.string() + ": expected a table that begins with the line '" +
+                                       CovarianceHeader() + "'; give the pose_covariance.csv of a run");
+  }
+  std::vector<StampedCovariance> covariances;
+  while (lines.Next(&line)) {
+    const auto fields = SplitAtCommas(line);
+    const auto t = ParseTime(fields[0]);
+    if (!t) throw lines.Failure("the stamp " + Quote(fields[0]) + " is not a time in seconds");
+    if (fields.size() != 22) throw lines.Failure("expected a stamp and 21 numbers, found " + Quote(line));
+    if (!covariances.empty() && *t <= covariances.back().t) throw lines.Failure(NotLater(covariances.back().t, *t));
+    StampedCovariance row{*t, Matrix6d::Zero()};
+    auto field = fields.begin() + 1;
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      for (Eigen::Index j = i; j < 6; ++j, ++field) {
+        const auto value = ParseFinite(*field);
+        if (!value) throw lines.Failure(Quote(*field) + " is not a finite number");
+        if (i == j && *value < 0.0) throw lines.Failure("the variance " + Quote(*field) + " is negative");
+        row.covariance(i, j) = row.covariance(j, i) = *value;
+      }
+    }
+    covariances.push_back(row);
+  }
+  if (covariances.empty()) throw Error(ErrorKind::kInput, path.string() + ": holds no covariances");
+  return covariances;
 }
 
 }  // namespace evo

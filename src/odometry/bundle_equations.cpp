@@ -66,16 +66,22 @@ void TrackEquations::Linearize(const BundleProblem& problem, const ErrorModel& m
   Innovate(steps, errors_, &innovations_);
   for (std::size_t k = 0; k < count; ++k) weights_[k] *= CauchyWeight(innovations_[k].squaredNorm(), model.loss_px);
   InformationOfErrors(steps, weights_, &information);
+  has_curvature_ = model.curvature;
+  if (!has_curvature_) return;
+  // Cauchy's loss in two dimensions has the second derivatives w and w (2 w - 1), of mean w^2, for its weight w.
+  for (double& weight : weights_) weight *= weight;
+  InformationOfErrors(steps, weights_, &curvature_);
 }
 
 Eigen::Vector2d TrackEquations::Weighted(std::size_t i, Eigen::Matrix<double, 2, 3>* by_point) const {
   Eigen::Vector2d error = Eigen::Vector2d::Zero();
   by_point->setZero();
   for (std::size_t j = 0; j < sightings.size(); ++j) {
-    const double weight = information(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(i));
-    if (weight == 0.0) continue;
-    error += weight * sightings[j].error;
-    *by_point += weight * sightings[j].by_point;
+    const auto row = static_cast<Eigen::Index>(j);
+    const auto column = static_cast<Eigen::Index>(i);
+    if (information(row, column) == 0.0) continue;
+    error += information(row, column) * sightings[j].error;
+    *by_point += curvature()(row, column) * sightings[j].by_point;
   }
   return error;
 }
@@ -167,10 +173,10 @@ void BundleEquations::LinearizePoint(std::size_t p) {
     pose_gradient_.segment<6>(Eigen::Index{6} * row) += pulls_[i];
     cross_[i].noalias() = turned.lazyProduct(by_point);
     for (std::size_t l = 0; l <= k; ++l) {
-      const double information = track.information(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l));
+      const double curvature = track.curvature()(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l));
       const int column = Pose(begin_[p] + l);
-      if (information == 0.0 || column < 0) continue;
-      const Eigen::Matrix<double, 6, 2> weighted = information * turned;
+      if (curvature == 0.0 || column < 0) continue;
+      const Eigen::Matrix<double, 6, 2> weighted = curvature * turned;
       poses_.At(row, column).noalias() += weighted.lazyProduct(track.sightings[l].by_pose);
     }
   }
@@ -196,7 +202,10 @@ Eigen::VectorXd BundleEquations::StepsIf(const std::vector<double>& signs) const
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(Eigen::Index{6} * reduced_.rows());
   for (std::size_t i = 0; i < pulls_.size(); ++i) {
     if (Pose(i) < 0) continue;
-    gradient.segment<6>(Eigen::Index{6} * Pose(i)) += signs[problem_.observations[i].point] * pulls_[i];
+    // What the point's own gradient would move the poses by is not an error of theirs.
+    const auto p = static_cast<std::size_t>(problem_.observations[i].point);
+    gradient.segment<6>(Eigen::Index{6} * Pose(i)) +=
+        signs[p] * (pulls_[i] - cross_[i] * (inverses_[p] * point_gradients_[p]));
   }
   return reduced_.Solve(-gradient);
 }

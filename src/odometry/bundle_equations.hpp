@@ -38,6 +38,9 @@ std::vector<InnovationStep> InnovationSteps(const BundleProblem& problem, double
 struct ErrorModel {
   std::vector<InnovationStep> steps;  ///< of all observations
   double loss_px;                     ///< Cauchy's width, of an innovation
+  /// The equations get the loss's mean second derivative, as they ought to where they tell how certain the minimum is.
+  /// Else they get its weight, which is larger: surer steps towards it.
+  bool curvature = false;
 
   std::span<const InnovationStep> Steps(std::size_t begin, std::size_t end) const {
     return std::span(steps).subspan(begin, end - begin);
@@ -47,16 +50,22 @@ struct ErrorModel {
 /// What one point's sightings say at the present values.
 struct TrackEquations {
   std::vector<BundleJacobian> sightings;  ///< null behind the camera
-  Eigen::MatrixXd information;            ///< of their errors, one coordinate
+  Eigen::MatrixXd information;            ///< of their errors, one coordinate: what the gradient is made of
+
+  /// The same for the second derivative.
+  const Eigen::MatrixXd& curvature() const { return has_curvature_ ? curvature_ : information; }
 
   /// `[begin, end)` are the observations of the point.
   void Linearize(const BundleProblem& problem, const ErrorModel& model, std::size_t begin, std::size_t end);
-  /// The sums over all sightings j of information(i, j) times their error, and times their derivative by the point.
+  /// The sums over all sightings j of information(i, j) times their error, and of curvature(i, j) times their
+  /// derivative by the point.
   Eigen::Vector2d Weighted(std::size_t i, Eigen::Matrix<double, 2, 3>* by_point) const;
 
  private:
   std::vector<Eigen::Vector2d> errors_, innovations_;
   std::vector<double> weights_;
+  Eigen::MatrixXd curvature_;
+  bool has_curvature_ = false;
 };
 
 /// The normal equations of a bundle problem at its present values, the points' part kept apart.
@@ -74,7 +83,7 @@ class BundleEquations {
 
   /// Reduces and factorises the system without damping; false if it is singular.
   bool Factorize();
-  /// After that: the poses' steps if every track's part of the gradient, the points' at rest, had that sign.
+  /// After that: the poses' steps if every track's part of the gradient had that sign.
   Eigen::VectorXd StepsIf(const std::vector<double>& signs) const;
 
  private:

@@ -132,10 +132,10 @@ class PoseFiller {
 
   /// From `frame` on in steps of `direction` up to but without `end`, while the poses can be estimated and are not far
   /// more uncertain than usual: the first pose, known by a few tracks just born, would turn the whole path.
-  void Extend(int frame, int end, int direction, SE3 start, const Matrix6d& of_start) {
+  void Extend(int frame, int end, int direction, SE3 start) {
     const double usual = Median(turns_);
     for (; frame != end; frame += direction) {
-      if (!Estimate(frame, start, of_start, PoseOptions().min_inlier_ratio)) return;
+      if (!Estimate(frame, start, PoseOptions().min_inlier_ratio)) return;
       if (turns_.back() > kUncertain * usual) {
         poses_.erase(frame);
         return;
@@ -145,18 +145,18 @@ class PoseFiller {
   }
 
   /// `start` is the pose of a frame of the bundle nearby; false if less than a share of its points agree with any pose.
-  bool Estimate(int frame, const SE3& start, const Matrix6d& of_start, double min_inlier_ratio) {
+  bool Estimate(int frame, const SE3& start, double min_inlier_ratio) {
     const PoseEstimate estimate = points_.EstimatePose(frames_, frame, start);
     if (!points_.Accepts(estimate, min_inlier_ratio)) return false;
     // The points are as uncertain as the bundle's poses nearby.
-    poses_[frame] = {estimate.T_cam_world, estimate.inlier_count, of_start + estimate.covariance};
+    poses_[frame] = {estimate.T_cam_world, estimate.inlier_count, estimate.covariance, false};
     turns_.push_back(Turn(estimate));
     return true;
   }
 
-  void Keep(int frame, const SE3& T_cam_world, const Matrix6d& covariance) {
+  void Keep(int frame, const SE3& T_cam_world) {
     const PoseEstimate estimate = points_.EstimatePose(frames_, frame, T_cam_world);
-    poses_[frame] = {T_cam_world, estimate.inlier_count, covariance};
+    poses_[frame] = {T_cam_world, estimate.inlier_count, Matrix6d::Zero(), true};
     if (estimate.inlier_count > 0) turns_.push_back(Turn(estimate));
   }
 
@@ -164,12 +164,14 @@ class PoseFiller {
     segment->frames.clear();
     segment->T_cam_world.clear();
     segment->inliers.clear();
-    segment->covariances.clear();
+    segment->adjusted.clear();
+    segment->besides.clear();
     for (const auto& [frame, pose] : poses_) {
+      if (pose.is_adjusted) segment->adjusted.push_back(segment->frames.size());
       segment->frames.push_back(frame);
       segment->T_cam_world.push_back(pose.T_cam_world);
       segment->inliers.push_back(pose.inliers);
-      segment->covariances.push_back(pose.covariance);
+      segment->besides.push_back(pose.besides);
     }
   }
 
@@ -177,7 +179,8 @@ class PoseFiller {
   struct Pose {
     SE3 T_cam_world;
     int inliers = 0;
-    Matrix6d covariance;
+    Matrix6d besides;
+    bool is_adjusted = false;
   };
 
   /// How uncertain the camera's turn is if the points are known: standard deviation, rad.
@@ -206,6 +209,19 @@ void Register(Parameters& parameters, FinalRefinementOptions& options) {
   parameters.Add("odometry.final.rounds", &options.rounds, 1, 100, "rounds, the noise measured anew before each");
   parameters.Add("odometry.final.budget", &options.budget, 1e3, 1e12,
                  "block products an iteration may cost before frames are thinned out");
+  Register(parameters, options.common_errors);
+}
+
+std::vector<Matrix6d> Segment::Covariances(bool scale_is_free) const {
+  std::vector<Matrix6d> covariances;
+  if (adjusted.empty()) return covariances;
+  const auto of_adjusted = uncertainty.Covariances(0, scale_is_free);
+  std::size_t k = 0;
+  for (std::size_t i = 0; i < besides.size(); ++i) {
+    while (k + 1 < adjusted.size() && adjusted[k + 1] <= i) ++k;
+    covariances.push_back(of_adjusted[k] + besides[i]);
+  }
+  return covariances;
 }
 
 void RefineSegment(const FinalRefinementOptions& options, const std::vector<Frame>& frames, int before, int after,
@@ -216,23 +232,23 @@ void RefineSegment(const FinalRefinementOptions& options, const std::vector<Fram
     t.push_back(ToSeconds(frames[segment->frames[place]].t - frames[segment->frames.front()].t));
   }
   const BundleOptions adjusted = Adjust(options, progress, t, pool, &run.bundle);
-  const PoseUncertainty uncertainty(adjusted, run.bundle, pool);
-  const auto [first, end] = uncertainty.CertainStretch();
-  const auto covariances = uncertainty.Covariances(first);
+  segment->uncertainty = PoseUncertainty(options.common_errors, adjusted, run.bundle, pool);
+  const auto [first, end] = segment->uncertainty.CertainStretch();
+  segment->uncertainty.Cut(first, end);
   const RefinedPoints points = TakePoints(run, options.drift, segment);
   PoseFiller filler(frames, points);
   const auto& poses = run.bundle.T_cam_world;
   const int end_frame = 1 + segment->frames[end == poses.size() ? segment->frames.size() - 1 : run.frames[end - 1]];
   for (std::size_t k = first; k < end; ++k) {
     const int frame = segment->frames[run.frames[k]];
-    filler.Keep(frame, poses[k], covariances[k]);
+    filler.Keep(frame, poses[k]);
     const int next = k + 1 < end ? segment->frames[run.frames[k + 1]] : end_frame;
     for (int between = frame + 1; between < next; ++between) {
-      filler.Estimate(between, poses[k], covariances[k], kFewestBetween);
+      filler.Estimate(between, poses[k], kFewestBetween);
     }
   }
-  if (first == 0) filler.Extend(segment->frames.front() - 1, before - 1, -1, poses.front(), covariances.front());
-  if (end == poses.size()) filler.Extend(segment->frames.back() + 1, after, 1, poses.back(), covariances.back());
+  if (first == 0) filler.Extend(segment->frames.front() - 1, before - 1, -1, poses.front());
+  if (end == poses.size()) filler.Extend(segment->frames.back() + 1, after, 1, poses.back());
   filler.MoveTo(segment);
   progress(1.0);
 }

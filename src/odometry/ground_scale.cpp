@@ -115,19 +115,20 @@ void MovePoints(const std::vector<Frame>& frames, const std::vector<SE3>& old_po
   }
 }
 
-/// Every step from pose to pose with the scale that holds there. The covariances only change their unit: what the
-/// ground has added to the knowledge of the poses is not in them.
-void Rescale(const std::vector<double>& scales, const std::vector<Frame>& frames, std::vector<Segment>* segments) {
+/// Every step from pose to pose with the scale that holds there, which has that relative error, another one after a way
+/// of `reach` in the new unit.
+void Rescale(const std::vector<double>& scales, double error, double reach, const std::vector<Frame>& frames,
+             std::vector<Segment>* segments) {
   std::size_t pose = 0;
   Eigen::Vector3d old_position = Eigen::Vector3d::Zero();
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   for (Segment& segment : *segments) {
     const std::vector<SE3> old_poses = segment.T_cam_world;
     const auto begin = scales.begin() + static_cast<std::ptrdiff_t>(pose);
-    for (std::size_t i = 0; i < segment.covariances.size(); ++i) {
+    for (std::size_t i = 0; i < segment.besides.size(); ++i) {
       const double scale = begin[static_cast<std::ptrdiff_t>(i)];
-      segment.covariances[i].topRows<3>() *= scale;
-      segment.covariances[i].leftCols<3>() *= scale;
+      segment.besides[i].topRows<3>() *= scale;
+      segment.besides[i].leftCols<3>() *= scale;
     }
     for (SE3& T_cam_world : segment.T_cam_world) {
       const SE3 T_world_cam = T_cam_world.Inverse();
@@ -137,6 +138,9 @@ void Rescale(const std::vector<double>& scales, const std::vector<Frame>& frames
       T_cam_world = SE3(T_world_cam.rotation(), position).Inverse();
       ++pose;
     }
+    std::vector<SE3> adjusted;
+    for (const std::size_t i : segment.adjusted) adjusted.push_back(segment.T_cam_world[i]);
+    segment.uncertainty.HoldScale(adjusted, error, reach);
     MovePoints(frames, old_poses, {begin, scales.begin() + static_cast<std::ptrdiff_t>(pose)}, &segment);
   }
 }
@@ -165,8 +169,10 @@ GroundScale ScaleByGround(const GroundOptions& options, const std::vector<Frame>
   const double height = known ? options.camera_height_m : 1.0 / Median(heights->inverse);
   std::vector<double> scales;
   for (const double inverse : heights->inverse) scales.push_back(height * inverse);
-  Rescale(scales, frames, segments);
   const GroundProfile& profile = heights->profile;
+  // The heights are smoothed over so long a way that their drift over it is as large as their error.
+  const double reach = height * std::max(2.0 * kWindow, std::pow(profile.error / options.drift, 2));
+  Rescale(scales, profile.error, reach, frames, segments);
   const auto [lowest, highest] = std::ranges::minmax(scales);
   const GroundScale scale{true, known, profile.tracks, profile.covered, profile.error, lowest, highest};
   spdlog::info(

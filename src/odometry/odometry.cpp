@@ -115,12 +115,14 @@ OdometryResult RunOdometry(const Tracks& tracks, const Camera& camera, const Odo
   }
   const bool grounded = options.ground.hold_height || options.ground.camera_height_m > 0.0;
   if (grounded) result.ground = ScaleByGround(options.ground, frames, &segments);
+  const bool scale_is_free = !result.ground || !result.ground->metric;
   for (const Segment& segment : segments) {
+    const auto covariances = segment.Covariances(scale_is_free);
     for (std::size_t i = 0; i < segment.frames.size(); ++i) {
       result.trajectory.push_back({frames[segment.frames[i]].t, segment.T_cam_world[i].Inverse()});
       result.inliers.push_back(segment.inliers[i]);
-      if (segment.covariances.empty()) continue;
-      result.covariances.push_back(InWorld(segment.T_cam_world[i], segment.covariances[i]));
+      if (covariances.empty()) continue;
+      result.covariances.push_back({frames[segment.frames[i]].t, InWorld(segment.T_cam_world[i], covariances[i])});
     }
     result.points.insert(result.points.end(), segment.points.begin(), segment.points.end());
   }

@@ -147,6 +147,10 @@ std::vector<TableRow> SummaryRows(const std::string& sequence, const Evaluation&
     const auto& kitti = result.segments.kitti;
     rows.back().emplace_back("kitti_translation_percent", kitti.translation_percent.mean);
     rows.back().emplace_back("kitti_rotation_deg_per_m", kitti.rotation_deg_per_m.mean);
+    const auto& consistency = evaluation.consistency;
+    rows.back().emplace_back("nees_translation", consistency ? consistency->translation.mean : kNone);
+    rows.back().emplace_back("nees_rotation", consistency ? consistency->rotation.mean : kNone);
+    rows.back().emplace_back("nees_pose", consistency ? consistency->pose.mean : kNone);
   }
   return rows;
 }
@@ -242,6 +246,11 @@ std::string FormatSummary(const Evaluation& evaluation) {
          evaluation.path_m > 0.0 ? Short(percent * result.planar.mean_abs, 4) : "-", Short(result.planar.max_abs, 4),
          Short(result.planar.final, 4), Short(result.Ape(PoseRelation::kTranslation).rmse, 4),
          Short(Find(result.rpe.front().relations, PoseRelation::kTranslation).rmse, 4)});
+  }
+  if (const auto& consistency = evaluation.consistency) {
+    table += "squared errors over their covariances (1: as said): positions " +
+             Short(consistency->translation.mean, 2) + ", rotations " + Short(consistency->rotation.mean, 2) +
+             ", poses " + Short(consistency->pose.mean, 2) + "\n";
   }
   return table;
 }

@@ -11,35 +11,13 @@
 #include "evo/odometry/block_skyline.hpp"
 #include "evo/odometry/pose_uncertainty.hpp"
 #include "evo/odometry/track_weights.hpp"
+#include "odometry/bundle_drive.hpp"
 
 namespace evo {
 namespace {
 
-/// A camera driving forward among points; poses and points as they truly are.
-BundleProblem Drive(int frames, int points, double noise_px, std::uint32_t seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> side(-0.6, 0.6), depth(5.0, 40.0);
-  std::normal_distribution<double> normal(0.0, noise_px);
-  BundleProblem problem;
-  for (int i = 0; i < frames; ++i) {
-    problem.T_cam_world.emplace_back(so3::Exp({0.001 * i, -0.01 * i, 0}), Eigen::Vector3d(0.02 * i, 0, -0.4 * i));
-  }
-  const Eigen::Matrix2d px_per_unit = 226.0 * Eigen::Matrix2d::Identity();
-  for (int p = 0; p < points; ++p) {
-    const int first = p % (frames - 4);
-    const double z = depth(random);
-    const BundlePoint point{first, {side(random), side(random), 1.0 / z}};
-    const int id = static_cast<int>(problem.points.size());
-    problem.points.push_back(point);
-    for (int i = first; i < std::min(frames, first + 8); ++i) {
-      const Eigen::Vector3d q = problem.T_cam_world[i] * WorldPosition(problem, point);
-      if (q.z() < 1.0) break;
-      const Eigen::Vector2d noise(normal(random), normal(random));
-      problem.observations.push_back({i, id, q.head<2>() / q.z() + noise / 226.0, px_per_unit});
-    }
-  }
-  return problem;
-}
+using testing::DriveBundle;
+using testing::LetTracksDrift;
 
 void Disturb(BundleProblem* problem, double by) {
   std::mt19937 random(9);
@@ -79,7 +57,7 @@ TEST(BlockSkyline, RefusesAnIndefiniteMatrix) {
 }
 
 TEST(BundleAdjuster, JacobiansMatchFiniteDifferences) {
-  const auto problem = Drive(8, 6, 15.0, 1);
+  const auto problem = DriveBundle(8, 6, 15.0, 1);
   const double h = 1e-6;
   for (const auto& observation : problem.observations) {
     const BundlePoint& point = problem.points[observation.point];
@@ -104,7 +82,7 @@ TEST(BundleAdjuster, JacobiansMatchFiniteDifferences) {
 }
 
 TEST(BundleAdjuster, RecoversTheTruthWithoutNoise) {
-  const auto truth = Drive(12, 120, 0.0, 2);
+  const auto truth = DriveBundle(12, 120, 0.0, 2);
   auto problem = truth;
   problem.fixed_frames = 2;  // the scale is held
   Disturb(&problem, 0.05);
@@ -117,28 +95,10 @@ TEST(BundleAdjuster, RecoversTheTruthWithoutNoise) {
 }
 
 TEST(BundleAdjuster, FreeScaleStillConverges) {
-  auto problem = Drive(12, 120, 0.0, 3);
+  auto problem = DriveBundle(12, 120, 0.0, 3);
   Disturb(&problem, 0.05);
   const auto summary = AdjustBundle({.iterations = 50, .relative_decrease = 1e-12}, &problem);
   EXPECT_LT(summary.final_cost, 1e-8);
-}
-
-/// Lets every track slide over its surface at random, by `step_px` from sighting to sighting.
-void LetTracksDrift(double step_px, std::uint32_t seed, BundleProblem* problem) {
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal(0.0, step_px / 226.0);
-  Eigen::Vector2d slid = Eigen::Vector2d::Zero();
-  int point = -1;
-  for (auto& observation : problem->observations) {
-    const BundlePoint& of = problem->points[observation.point];
-    const SE3 T_cam_anchor = problem->T_cam_world[observation.frame] * problem->T_cam_world[of.anchor].Inverse();
-    const double depth_share =
-        (T_cam_anchor * (of.inverse_depth.head<2>().homogeneous() / of.inverse_depth.z())).z() * of.inverse_depth.z();
-    if (observation.point != point) slid.setZero();
-    point = observation.point;
-    observation.x += slid / depth_share;
-    slid += depth_share * Eigen::Vector2d(normal(random), normal(random));
-  }
 }
 
 /// Root mean square error of the poses' directions of view, rad.
@@ -152,8 +112,8 @@ double TurnError(const BundleProblem& problem, const BundleProblem& truth) {
 
 /// The same after an adjustment that expects that drift.
 double TurnError(double drift, std::uint32_t seed) {
-  const auto truth = Drive(40, 500, 0.0, seed);
-  auto problem = Drive(40, 500, 0.1, seed);
+  const auto truth = DriveBundle(40, 500, 0.0, seed);
+  auto problem = DriveBundle(40, 500, 0.1, seed);
   problem.fixed_frames = 2;
   LetTracksDrift(0.3, seed, &problem);
   AdjustBundle({.iterations = 30, .loss_px = 100.0, .drift = drift}, &problem);
@@ -170,7 +130,7 @@ TEST(BundleAdjuster, ExpectingDriftHelpsWhereTracksDrift) {
 }
 
 TEST(BundleAdjuster, ExpectingDriftEndsInAMinimum) {
-  auto problem = Drive(10, 60, 0.5, 6);
+  auto problem = DriveBundle(10, 60, 0.5, 6);
   problem.fixed_frames = 2;
   const BundleOptions options{.iterations = 100, .drift = 0.4, .relative_decrease = 1e-14};
   // The magnifications are those of the start, so from there once more.
@@ -191,78 +151,6 @@ TEST(BundleAdjuster, ExpectingDriftEndsInAMinimum) {
   }
 }
 
-/// Mean squared error of the poses over what their covariances say, for one degree of freedom: 1 if they are honest.
-double NormalizedError(double noise_px, double drift_px, double expected_drift, std::uint32_t seed) {
-  const auto truth = Drive(40, 500, 0.0, seed);
-  auto problem = Drive(40, 500, noise_px, seed);
-  problem.fixed_frames = 2;
-  LetTracksDrift(drift_px, seed, &problem);
-  const BundleOptions options{.iterations = 30, .loss_px = 1.0, .drift = expected_drift};
-  AdjustBundle(options, &problem);
-  const auto covariances = PoseUncertainty(options, problem).Covariances(0);
-  EXPECT_EQ(covariances.front().norm(), 0.0) << "it is fixed";
-  double sum = 0.0;
-  for (std::size_t i = 2; i < truth.T_cam_world.size(); ++i) {
-    const Vector6d error = (problem.T_cam_world[i] * truth.T_cam_world[i].Inverse()).Log();
-    sum += error.dot(covariances[i].ldlt().solve(error)) / 6.0;
-  }
-  return sum / static_cast<double>(truth.T_cam_world.size() - 2);
-}
-
-double MeanNormalizedError(double noise_px, double drift_px, double expected_drift) {
-  double sum = 0.0;
-  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
-    sum += NormalizedError(noise_px, drift_px, expected_drift, seed) / 10.0;
-  }
-  return sum;
-}
-
-TEST(BundleAdjuster, CovariancesAreHonest) {
-  // The bounds leave room for the scatter of ten drives whose poses err together; half or twice the standard deviation
-  // would be far outside.
-  for (const auto& [noise_px, drift_px, expected_drift] :
-       {std::array{0.3, 0.0, 0.0}, std::array{0.2, 0.2, 1.0}, std::array{0.2, 0.2, 0.0}}) {
-    const double normalized = MeanNormalizedError(noise_px, drift_px, expected_drift);
-    EXPECT_GT(normalized, 0.5) << noise_px << " " << drift_px;
-    EXPECT_LT(normalized, 2.0) << noise_px << " " << drift_px;
-  }
-}
-
-TEST(BundleAdjuster, CovariancesAreRelativeToAnyPose) {
-  auto problem = Drive(40, 500, 0.3, 1);
-  problem.fixed_frames = 2;
-  AdjustBundle({}, &problem);
-  const PoseUncertainty uncertainty({}, problem);
-  const auto from_first = uncertainty.Covariances(0);
-  const auto from_last = uncertainty.Covariances(39);
-  EXPECT_LT(from_last[39].norm(), 1e-12);
-  // The turn between two poses does not depend on where it is seen from.
-  EXPECT_NEAR(std::sqrt(from_first[39].bottomRightCorner<3, 3>().trace()), uncertainty.Turn(0, 39), 1e-9);
-  EXPECT_NEAR(std::sqrt(from_last[0].bottomRightCorner<3, 3>().trace()), uncertainty.Turn(0, 39), 1e-9);
-}
-
-TEST(BundleAdjuster, EndsOfFewBadTracksAreNotCertain) {
-  auto problem = Drive(200, 4000, 0.3, 2);
-  const auto stretch = [&] {
-    problem.fixed_frames = 2;
-    AdjustBundle({}, &problem);
-    return PoseUncertainty({}, problem).CertainStretch();
-  };
-  EXPECT_EQ(stretch(), std::pair(std::size_t{0}, std::size_t{200}));
-  const auto at_an_end = [](const BundleObservation& o) { return o.frame < 8 || o.frame >= 190; };
-  std::erase_if(problem.observations, [&](const auto& o) { return at_an_end(o) && o.point % 10 != 0; });
-  std::mt19937 random(3);
-  std::normal_distribution<double> normal(0.0, 2.0 / 226.0);
-  for (auto& o : problem.observations) {
-    if (at_an_end(o)) o.x += Eigen::Vector2d(normal(random), normal(random));
-  }
-  const auto [begin, end] = stretch();
-  EXPECT_GE(begin, 3u);
-  EXPECT_LE(begin, 12u);
-  EXPECT_LE(end, 197u);
-  EXPECT_GE(end, 185u);
-}
-
 /// The points in the order in which they come into view, as in a run: only so can threads share the work.
 BundleProblem InOrderOfFrames(BundleProblem problem) {
   std::ranges::stable_sort(problem.observations, {}, [&](const BundleObservation& observation) {
@@ -280,18 +168,18 @@ BundleProblem InOrderOfFrames(BundleProblem problem) {
 }
 
 TEST(BundleAdjuster, ThreadsChangeNothing) {
-  auto start = InOrderOfFrames(Drive(150, 1500, 0.3, 7));
+  auto start = InOrderOfFrames(DriveBundle(150, 1500, 0.3, 7));
   start.fixed_frames = 2;
   Disturb(&start, 0.002);
   const BundleOptions options{.iterations = 4, .drift = 0.1};
   auto alone = start;
   AdjustBundle(options, &alone);
-  const auto alone_covariances = PoseUncertainty(options, alone).Covariances(0);
+  const auto alone_covariances = PoseUncertainty({}, options, alone).Covariances(0, true);
   for (const int threads : {1, 2, 4}) {
     ThreadPool pool(threads);
     auto together = start;
     AdjustBundle(options, &together, &pool);
-    const auto covariances = PoseUncertainty(options, together, &pool).Covariances(0);
+    const auto covariances = PoseUncertainty({}, options, together, &pool).Covariances(0, true);
     for (std::size_t i = 0; i < alone.T_cam_world.size(); ++i) {
       EXPECT_EQ(alone.T_cam_world[i].Matrix(), together.T_cam_world[i].Matrix()) << threads << " " << i;
       EXPECT_EQ(alone_covariances[i], covariances[i]) << threads << " " << i;
@@ -307,7 +195,7 @@ TEST(BundleAdjuster, ExpectingTheUsualMotionHoldsAPoseOfFewTracks) {
   constexpr int kFrame = 6;
   double with = 0.0, without = 0.0;  // largest errors
   for (std::uint32_t seed = 1; seed <= 10; ++seed) {
-    auto truth = Drive(12, 120, 0.2, seed);
+    auto truth = DriveBundle(12, 120, 0.2, seed);
     truth.fixed_frames = 2;
     int seen = 0;
     std::erase_if(truth.observations, [&](const BundleObservation& o) { return o.frame == kFrame && ++seen > 5; });
@@ -330,7 +218,7 @@ TEST(BundleAdjuster, ExpectingTheUsualMotionHoldsAPoseOfFewTracks) {
 
 /// A drive in which every other track is eight times as noisy as the others.
 BundleProblem DriveWithNoisyTracks(std::uint32_t seed) {
-  auto problem = Drive(40, 500, 0.1, seed);
+  auto problem = DriveBundle(40, 500, 0.1, seed);
   problem.fixed_frames = 2;
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(0.0, 0.8 / 226.0);
@@ -359,7 +247,7 @@ TEST(BundleAdjuster, TracksWeighAsTheirNoiseLetsThem) {
 
 TEST(BundleAdjuster, WeighingTracksHelpsWhereTheirNoiseDiffers) {
   const auto turn_error = [](bool weigh, std::uint32_t seed) {
-    const auto truth = Drive(40, 500, 0.0, seed);
+    const auto truth = DriveBundle(40, 500, 0.0, seed);
     auto problem = DriveWithNoisyTracks(seed);
     const BundleOptions options{.iterations = 30, .loss_px = 100.0};
     AdjustBundle(options, &problem);
@@ -378,8 +266,8 @@ TEST(BundleAdjuster, WeighingTracksHelpsWhereTheirNoiseDiffers) {
 }
 
 TEST(BundleAdjuster, OutliersHardlyMatter) {
-  const auto truth = Drive(12, 200, 0.0, 4);
-  auto problem = Drive(12, 200, 0.3, 4);
+  const auto truth = DriveBundle(12, 200, 0.0, 4);
+  auto problem = DriveBundle(12, 200, 0.3, 4);
   problem.fixed_frames = 2;
   for (std::size_t i = 0; i < problem.observations.size(); i += 12) problem.observations[i].x.x() += 0.1;
   AdjustBundle({.iterations = 50}, &problem);

@@ -230,11 +230,11 @@ TEST(GroundScale, MovesThePointsWithTheFramesThatSeeThem) {
 
 TEST(GroundScale, KeepsRotationsAndTheFirstPose) {
   Street street = StreetMaker({.frames = 300, .bend = 0.002}).Make();
-  street.segments[0].covariances.assign(street.frames.size(), Matrix6d::Identity());
+  street.segments[0].besides.assign(street.frames.size(), Matrix6d::Identity());
   const Street before = street;
   ASSERT_TRUE(Scale(&street).found);
-  EXPECT_NEAR(street.segments[0].covariances[100](1, 1), std::pow(street.scale[100], 2), 0.1);
-  EXPECT_EQ(street.segments[0].covariances[100](4, 4), 1.0);
+  EXPECT_NEAR(street.segments[0].besides[100](1, 1), std::pow(street.scale[100], 2), 0.1);
+  EXPECT_EQ(street.segments[0].besides[100](4, 4), 1.0);
   EXPECT_NEAR(street.segments[0].T_cam_world.front().translation().norm(), 0.0, 1e-9);
   for (std::size_t i = 0; i < street.frames.size(); ++i) {
     const auto& pose = street.segments[0].T_cam_world[i];

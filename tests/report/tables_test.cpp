@@ -49,7 +49,7 @@ TEST_F(TablesTest, SummaryColumnsStayWhatTheyAre) {
       "ape_rotation_rmse_deg,ape_rotation_mean_deg,ape_rotation_max_deg,rpe_delta,rpe_translation_rmse_m,"
       "rpe_rotation_rmse_deg,mean_abs_longitudinal_over_distance_percent,mean_abs_lateral_over_distance_percent,"
       "mean_abs_vertical_over_distance_percent,mean_planar_over_distance_percent,rebootstraps,"
-      "kitti_translation_percent,kitti_rotation_deg_per_m\n"))
+      "kitti_translation_percent,kitti_rotation_deg_per_m,nees_translation,nees_rotation,nees_pose\n"))
       << csv;
   EXPECT_NE(csv.find("\n\"drive, \"\"day\"\"\",none,1.000000000,182,0.900000000,1,100.000000000,"), std::string::npos)
       << csv;
@@ -157,6 +157,11 @@ TEST_F(TablesTest, TerminalTableLinesUp) {
   EXPECT_EQ(table[0], "path 100.00 m, 10.00 s, coverage 90.0 %, gaps 1, up -y");
   for (std::size_t i = 2; i < table.size(); ++i) EXPECT_EQ(table[i].size(), table[1].size());
   EXPECT_TRUE(table[4].starts_with("origin "));
+  Evaluation with_covariances = SampleEvaluation();
+  with_covariances.consistency.emplace();
+  with_covariances.consistency->rotation.mean = 1.5;
+  EXPECT_NE(FormatSummary(with_covariances).find("rotations 1.50"), std::string::npos);
+  EXPECT_EQ(std::get<double>(SummaryRows("day", with_covariances).front()[60].second), 1.5);
 }
 
 TEST_F(TablesTest, ManifestHoldsWhatWasRun) {

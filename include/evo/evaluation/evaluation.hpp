@@ -10,6 +10,7 @@
 #include "evo/core/time.hpp"
 #include "evo/evaluation/alignment.hpp"
 #include "evo/evaluation/association.hpp"
+#include "evo/evaluation/consistency.hpp"
 #include "evo/evaluation/driving.hpp"
 #include "evo/evaluation/pose_relation.hpp"
 #include "evo/evaluation/relative_pose_error.hpp"
@@ -86,12 +87,15 @@ struct Evaluation {
   TimeNs longest_gap = 0;  ///< a stretch of the interval without a pose that is longer is a gap
   std::int64_t gaps = 0;   ///< their number, those at the start and the end of the interval included
   std::vector<AlignedEvaluation> alignments;
-  std::vector<std::string> left_out;  ///< why, of each alignment that the poses do not determine
+  std::optional<Consistency> consistency;  ///< of the estimate with its covariances, where those are given
+  std::vector<std::string> left_out;       ///< why, of each alignment that the poses do not determine
 };
 
-/// Judges `estimate` by `truth`. Throws Error: kNothingToDo where they do not overlap in time, kDegenerateAlignment as
+/// Judges `estimate` by `truth`, and its covariances, if there are any, by its errors: with its scale fitted if the
+/// first alignment fits one. Throws Error: kNothingToDo where they do not overlap in time, kDegenerateAlignment as
 /// Align does, kUsage where seconds are asked of files without stamps.
 Evaluation Evaluate(const Trajectory& truth, const Trajectory& estimate, std::span<const Alignment> alignments,
-                    const EvaluationInterval& interval, const EvaluationOptions& options);
+                    const EvaluationInterval& interval, const EvaluationOptions& options,
+                    std::span<const StampedCovariance> covariances = {});
 
 }  // namespace evo

@@ -16,6 +16,13 @@ struct StampedPose {
 /// Poses in strictly increasing order of time.
 using Trajectory = std::vector<StampedPose>;
 
+/// How far a pose may be off: covariance of (x, y, z, rx, ry, rz), its position and its rotation vector, both along the
+/// axes of the world.
+struct StampedCovariance {
+  TimeNs t = 0;
+  Matrix6d covariance;
+};
+
 /// The pose at `t`, interpolated between its neighbours. Empty outside the trajectory, which is never extrapolated, and
 /// where the neighbours are more than `max_interval` apart.
 std::optional<SE3> PoseAt(const Trajectory& trajectory, TimeNs t, TimeNs max_interval);

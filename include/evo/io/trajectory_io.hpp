@@ -31,9 +31,11 @@ Trajectory ReadGroundTruth(const std::filesystem::path& path, GroundTruthSource 
 /// Throws Error (kOutput, or kInput for a pose that is not finite).
 void WriteTum(const std::filesystem::path& path, const Trajectory& trajectory);
 
-/// Writes a row `timestamp` and the upper triangle, row by row, of the covariance of (x, y, z, rx, ry, rz) for each
-/// pose: its position and its rotation vector, both along the axes of the world. Throws Error (kOutput).
-void WritePoseCovariances(const std::filesystem::path& path, const Trajectory& trajectory,
-                          const std::vector<Matrix6d>& covariances);
+/// Writes a row `timestamp` and the upper triangle, row by row, of each covariance. Throws Error (kOutput).
+void WritePoseCovariances(const std::filesystem::path& path, const std::vector<StampedCovariance>& covariances);
+
+/// Reads what WritePoseCovariances writes. Throws Error (kInput) with file and line; stamps must strictly increase, no
+/// variance may be negative and there must be a row.
+std::vector<StampedCovariance> ReadPoseCovariances(const std::filesystem::path& path);
 
 }  // namespace evo

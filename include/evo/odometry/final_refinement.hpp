@@ -7,6 +7,7 @@
 #include "evo/core/parameters.hpp"
 #include "evo/odometry/frame.hpp"
 #include "evo/odometry/point.hpp"
+#include "evo/odometry/pose_uncertainty.hpp"
 
 namespace evo {
 
@@ -22,6 +23,7 @@ struct FinalRefinementOptions {
   int rounds = 3;         ///< of adjustment, the noise measured anew before each
   int iterations = 4;     ///< of each round
   double budget = 4e6;    ///< 6x6 block products an iteration may cost; beyond it frames are thinned out
+  CommonErrors common_errors;
 };
 void Register(Parameters& parameters, FinalRefinementOptions& options);
 
@@ -30,10 +32,16 @@ struct Segment {
   std::vector<int> frames;       ///< indices, in order of time
   std::vector<SE3> T_cam_world;  ///< of these frames
   std::vector<int> inliers;      ///< of these frames
-  /// Of the left twists of these poses, the first pose and the distance of the farthest held; empty before
-  /// RefineSegment.
-  std::vector<Matrix6d> covariances;
-  std::vector<Point> points;  ///< of the map
+  std::vector<Point> points;     ///< of the map
+
+  // How far the poses may be off; empty before RefineSegment.
+  PoseUncertainty uncertainty;        ///< of those that were adjusted together
+  std::vector<std::size_t> adjusted;  ///< which of these frames those are
+  /// Of every pose, besides the uncertainty of the last adjusted one before it, or of the first: of left twists.
+  std::vector<Matrix6d> besides;
+
+  /// Of the left twists of these poses, relative to the first adjusted one, see PoseUncertainty.
+  std::vector<Matrix6d> Covariances(bool scale_is_free) const;
 };
 
 /// Bundle adjustment over the frames of one segment and all their tracks, then every frame's pose against the refined

@@ -29,9 +29,9 @@ void Register(Parameters& parameters, OdometryOptions& options);
 struct OdometryResult {
   Trajectory trajectory;     ///< a pose for every frame that could be estimated, and for no other
   std::vector<int> inliers;  ///< points that agreed with each of them
-  /// Of each of them, if there was a final refinement: position and rotation vector, both along the axes of the world,
-  /// relative to the segment's first pose and to the distance of its farthest. In units of the trajectory, and rad.
-  std::vector<Matrix6d> covariances;
+  /// Of each of them, if there was a final refinement, relative to the first certain pose of its segment and, if the
+  /// scale is arbitrary, to the scale that fits the segment best. In units of the trajectory, and rad.
+  std::vector<StampedCovariance> covariances;
   std::vector<Point> points;  ///< the map, world
   bool resampled = false;     ///< the tracks were asynchronous
   int frames = 0;             ///< with and without a pose
