@@ -150,8 +150,9 @@ void RunSimulate(const SimulateArguments& arguments, const std::vector<std::stri
   SimulationSink* const sink = arguments.preview_every_s > 0.0 ? static_cast<SimulationSink*>(&preview) : output.get();
   const SimulationCounts counts = record.Time("simulate", [&] {
     Progress progress("simulate", !arguments.common.quiet);
-    return Simulate(run.scene, run.camera, run.motion, run.duration, config.scene.sensor, config.scene.simulation,
-                    static_cast<std::uint64_t>(config.scene.seed), &pool, &progress, sink);
+    const TimeNs lead_in = std::min(FromSeconds(config.scene.simulation.lead_in_s), run.before);
+    return Simulate(run.scene, run.camera, run.motion, lead_in, run.duration, config.scene.sensor,
+                    config.scene.simulation, static_cast<std::uint64_t>(config.scene.seed), &pool, &progress, sink);
   });
   output->Commit();
   AddCounts(counts, &record);

@@ -119,7 +119,7 @@ SimulatedRun PartOf(const SimulatedRun& run, TimeNs from, TimeNs duration) {
   const auto later = [from]<class Motion>(const Motion& motion) -> Motion {
     return [motion, from](TimeNs t) { return motion(t + from); };
   };
-  SimulatedRun part{run.scene, run.camera, later(run.motion), duration};
+  SimulatedRun part{run.scene, run.camera, later(run.motion), duration, run.before + from};
   for (Body& body : part.scene.bodies) body.T_world_body = later(body.T_world_body);
   return part;
 }

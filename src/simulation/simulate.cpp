@@ -55,8 +55,9 @@ class Simulation {
         images_(options.image_hz),
         depth_maps_(options.depth_hz) {}
 
-  SimulationCounts Run(TimeNs duration, Progress* progress) {
-    RenderStart();
+  SimulationCounts Run(TimeNs lead_in, TimeNs duration, Progress* progress) {
+    RenderStart(-lead_in);
+    for (TimeNs begin = -lead_in; begin < 0; begin += kSlab) RenderSlab(begin, std::min(begin + kSlab, TimeNs{0}));
     for (TimeNs begin = 0; begin < duration; begin += kSlab) {
       const TimeNs end = std::min(begin + kSlab, duration);
       RenderSlab(begin, end);
@@ -74,13 +75,13 @@ class Simulation {
     return static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
   }
 
-  /// The state of the pixels at time 0.
-  void RenderStart() {
-    const SE3 T_world_cam = motion_(0);
+  /// The state of the pixels at `t`.
+  void RenderStart(TimeNs t) {
+    const SE3 T_world_cam = motion_(t);
     pool_->ForEach(tiles_.size(), [&](std::size_t i) {
-      const auto visible = renderer_.FindVisible(tiles_[i], 0, 0, T_world_cam, T_world_cam);
-      renderer_.Render(tiles_[i], visible, 0, T_world_cam, &tile_radiance_[i]);
-      sensor_.Advance(tiles_[i], 0, At(0, tile_radiance_[i]), &tile_events_[i]);
+      const auto visible = renderer_.FindVisible(tiles_[i], t, t, T_world_cam, T_world_cam);
+      renderer_.Render(tiles_[i], visible, t, T_world_cam, &tile_radiance_[i]);
+      sensor_.Advance(tiles_[i], t, At(t, tile_radiance_[i]), &tile_events_[i]);
     });
   }
 
@@ -142,6 +143,7 @@ class Simulation {
   void DeliverEvents(TimeNs end) {
     for (auto& events : tile_events_) {
       for (std::size_t i = 0; i < events.size(); ++i) {
+        if (events.t[i] < 0) continue;  // of the lead-in
         waiting_.push_back({events.t[i], events.y[i], events.x[i], events.polarity[i]});
       }
       events.clear();
@@ -233,14 +235,16 @@ void Register(Parameters& p, SimulationOptions& o) {
   p.Add("simulation.largest_step_px", &o.largest_step_px, 0.05, 10.0, "motion between two renders (px)");
   p.Add("simulation.longest_step_s", &o.longest_step_s, 1e-4, 0.01, "between two renders where nothing moves (s)");
   p.Add("simulation.tile_px", &o.tile_px, 4, 256, "side of the tiles that have render rates of their own (px)");
+  p.Add("simulation.lead_in_s", &o.lead_in_s, 0.0, 10.0,
+        "the camera sees the scene so long before the sequence begins, if that is not at the scene's start (s)");
   p.Add("simulation.image_hz", &o.image_hz, 0.0, 1000.0, "grey images a second; 0: none");
   p.Add("simulation.depth_hz", &o.depth_hz, 0.0, 1000.0, "depth maps a second, about 0.2 MB each; 0: none");
 }
 
-SimulationCounts Simulate(const Scene& scene, const Camera& camera, const CameraMotion& motion, TimeNs duration,
-                          const SensorOptions& sensor, const SimulationOptions& options, std::uint64_t seed,
-                          ThreadPool* pool, Progress* progress, SimulationSink* sink) {
-  return Simulation(scene, camera, motion, sensor, options, seed, pool, sink).Run(duration, progress);
+SimulationCounts Simulate(const Scene& scene, const Camera& camera, const CameraMotion& motion, TimeNs lead_in,
+                          TimeNs duration, const SensorOptions& sensor, const SimulationOptions& options,
+                          std::uint64_t seed, ThreadPool* pool, Progress* progress, SimulationSink* sink) {
+  return Simulation(scene, camera, motion, sensor, options, seed, pool, sink).Run(lead_in, duration, progress);
 }
 
 }  // namespace evo

@@ -33,7 +33,7 @@ EventColumns EventsOf(const Scene& scene, const Camera& camera, const CameraMoti
                       const SensorOptions& sensor, const SimulationOptions& options) {
   ThreadPool pool(2);
   EventsOnly sink;
-  Simulate(scene, camera, motion, duration, sensor, options, 1, &pool, nullptr, &sink);
+  Simulate(scene, camera, motion, 0, duration, sensor, options, 1, &pool, nullptr, &sink);
   return sink.events;
 }
 

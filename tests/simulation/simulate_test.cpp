@@ -74,7 +74,7 @@ class SimulateTest : public ::testing::Test {
  protected:
   SimulationCounts Run(const SensorOptions& sensor, Record* record, int threads = 2) const {
     ThreadPool pool(threads);
-    return Simulate(scene, camera, motion, kDuration, sensor, options, 3, &pool, nullptr, record);
+    return Simulate(scene, camera, motion, 0, kDuration, sensor, options, 3, &pool, nullptr, record);
   }
 
   Scene scene = MakeWall();
@@ -224,6 +224,27 @@ TEST_F(SimulateTest, DepthAndPosesAgree) {
   }
 }
 
+TEST_F(SimulateTest, ALeadInIsWhatTheCameraSawBefore) {
+  constexpr TimeNs kLeadIn = 40'000'000;
+  ThreadPool pool(2);
+  SensorOptions sensor;
+  sensor.bandwidth_hz = 30.0;
+  Record whole, part;
+  Simulate(scene, camera, motion, 0, kLeadIn + kDuration, sensor, options, 3, &pool, nullptr, &whole);
+  const CameraMotion later = [&](TimeNs t) { return motion(t + kLeadIn); };
+  Simulate(scene, camera, later, kLeadIn, kDuration, sensor, options, 3, &pool, nullptr, &part);
+  const auto first =
+      static_cast<std::size_t>(std::ranges::lower_bound(whole.events.t, kLeadIn) - whole.events.t.begin());
+  ASSERT_GT(first, 100u);
+  ASSERT_EQ(part.events.size(), whole.events.size() - first);
+  for (std::size_t i = 0; i < part.events.size(); ++i) {
+    ASSERT_EQ(part.events.t[i], whole.events.t[first + i] - kLeadIn) << i;
+    ASSERT_EQ(part.events.x[i], whole.events.x[first + i]) << i;
+    ASSERT_EQ(part.events.y[i], whole.events.y[first + i]) << i;
+  }
+  EXPECT_EQ(part.image_stamps.front(), 0);
+}
+
 /// The wall moves 15 px/s to the left: the second image is the first one, moved.
 TEST_F(SimulateTest, ImagesShowWhatTheMotionPredicts) {
   options.image_hz = 15.0;  // 0 and 1/15 s: one pixel apart
@@ -231,7 +252,7 @@ TEST_F(SimulateTest, ImagesShowWhatTheMotionPredicts) {
   const Calibration ideal{Distortion::kRadTan, 50, 40, 60.0, 60.0, 24.0, 20.0, {}};
   ThreadPool pool(2);
   Record record;
-  Simulate(scene, Camera(ideal), motion, kDuration, Noiseless(), options, 3, &pool, nullptr, &record);
+  Simulate(scene, Camera(ideal), motion, 0, kDuration, Noiseless(), options, 3, &pool, nullptr, &record);
   ASSERT_EQ(record.images.size(), 2u);
   int largest = 0;
   for (std::size_t y = 0; y < 40; ++y) {

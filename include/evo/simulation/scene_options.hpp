@@ -39,6 +39,7 @@ struct SimulatedRun {
   Camera camera;
   CameraMotion motion;
   TimeNs duration = 0;  ///< of the motion
+  TimeNs before = 0;    ///< the motion is known since so long before time 0
 };
 
 /// Throws Error: kInput for a calibration or motion file that cannot be read, kConfiguration for options that do not

@@ -21,6 +21,10 @@ struct SimulationOptions {
   double largest_step_px = 0.5;   ///< motion between two renders of a tile
   double longest_step_s = 0.005;  ///< between two renders of a tile in which nothing moves
   int tile_px = 16;
+  /// The camera sees the scene so long before the sequence begins, as far as the scene reaches back: a sensor that is
+  /// switched on with it would not lag yet, and its first positions would lead by up to as much as dark pixels are
+  /// slow.
+  double lead_in_s = 0.3;
   double image_hz = 20.0;  ///< grey images a second; 0: none
   double depth_hz = 20.0;  ///< depth maps a second; 0: none
 };
@@ -47,13 +51,15 @@ struct SimulationCounts {
   std::size_t depth_maps = 0;
 };
 
-/// What `camera` with an event sensor sees of `scene` on its way along `motion` during [0, duration). The tiles of the
-/// image are rendered at a rate of their own, so that nothing in them moves more than `largest_step_px` from one render
-/// to the next; between two renders the light changes linearly but for the lamps' flicker, which the sensor sees in
-/// full. Images and depth maps are rendered at their exact times. The result depends on `seed` and the options alone,
-/// not on how many threads `pool` has. `progress` may be null.
-SimulationCounts Simulate(const Scene& scene, const Camera& camera, const CameraMotion& motion, TimeNs duration,
-                          const SensorOptions& sensor, const SimulationOptions& options, std::uint64_t seed,
-                          ThreadPool* pool, Progress* progress, SimulationSink* sink);
+/// What `camera` with an event sensor sees of `scene` on its way along `motion` during [0, duration), having looked
+/// since
+/// -`lead_in`, from where on `motion` must be known, too. The tiles of the image are rendered at a rate of their own,
+/// so that nothing in them moves more than `largest_step_px` from one render to the next; between two renders the light
+/// changes linearly but for the lamps' flicker, which the sensor sees in full. Images and depth maps are rendered at
+/// their exact times. The result depends on `seed` and the options alone, not on how many threads `pool` has.
+/// `progress` may be null.
+SimulationCounts Simulate(const Scene& scene, const Camera& camera, const CameraMotion& motion, TimeNs lead_in,
+                          TimeNs duration, const SensorOptions& sensor, const SimulationOptions& options,
+                          std::uint64_t seed, ThreadPool* pool, Progress* progress, SimulationSink* sink);
 
 }  // namespace evo
