@@ -12,8 +12,9 @@ namespace evo {
 namespace {
 
 constexpr Eigen::Index kSamples = 100;
-constexpr std::size_t kReach = 25;      // poses between which a turn is compared with the usual
-constexpr double kUncertain = 3.0;      // times the usual standard deviation
+constexpr std::size_t kReach = 25;       // poses between which a turn is compared with the usual
+constexpr double kUncertainStart = 2.0;  // times the usual standard deviation: the first pose turns the whole path
+constexpr double kUncertainEnd = 3.0;
 constexpr std::size_t kMostShare = 10;  // of the run: one in so many may be left out at either end
 
 Eigen::Index Row(std::size_t pose) { return 6 * static_cast<Eigen::Index>(pose); }
@@ -177,11 +178,11 @@ std::pair<std::size_t, std::size_t> PoseUncertainty::CertainStretch() const {
   if (reach == 0) return {0, count};
   std::vector<double> turns;
   for (std::size_t i = 0; i + reach < count; ++i) turns.push_back(Turn(i, i + reach));
-  const double limit = kUncertain * Median(turns);
-  const auto certain = [&](double turn) { return turn <= limit; };
+  const double usual = Median(turns);
+  const auto within = [&](double limit) { return [usual, limit](double turn) { return turn <= limit * usual; }; };
   const auto most = static_cast<std::ptrdiff_t>(count / kMostShare);
-  const auto begin = std::find_if(turns.begin(), turns.begin() + most, certain) - turns.begin();
-  const auto after = std::find_if(turns.rbegin(), turns.rbegin() + most, certain) - turns.rbegin();
+  const auto begin = std::find_if(turns.begin(), turns.begin() + most, within(kUncertainStart)) - turns.begin();
+  const auto after = std::find_if(turns.rbegin(), turns.rbegin() + most, within(kUncertainEnd)) - turns.rbegin();
   return {static_cast<std::size_t>(begin), count - static_cast<std::size_t>(after)};
 }
 
