@@ -70,6 +70,8 @@ fails its row says so, and the script ends with 1.
 
 Errors are in % of the path; "origin-scale" lays the first pose on the true one and takes one scale, "sim3" fits
 everything (it is left out where a straight line does not determine it), "rotation" is the drift over half of the path.
+"Errors over covariance" are the squared errors of the poses over what pose_covariance.csv says, for one degree of
+freedom: 1 on average if it is honest.
 "Covered" is the share of the time since the first pose that has poses, "anew" how often the map was started anew.
 Real-time factors are for one run, one at a time: of tracking and odometry together, and of the odometry alone.
 
@@ -201,13 +203,14 @@ holds_tracks() {
 # judge_trajectory RESULTS FOLDER: against the truth beside the given tracks, if there is one. Ends with 7 where a
 # straight line does not determine sim3.
 judge_trajectory() {
-  local truth alignments code
+  local truth alignments code covariances=()
   truth=$(ground_truth_of "$2")
   [ -n "$truth" ] || return 0
+  [ ! -e "$1/pose_covariance.csv" ] || covariances=(--covariances "$1/pose_covariance.csv")
   for alignments in origin-scale,sim3 origin-scale; do
     code=0
-    "$EVO_RUN" evaluate --estimate "$1/trajectory.txt" --ground-truth "$truth" --align "$alignments" --out "$1/judged" \
-      --no-plots --quiet >/dev/null 2>"$1/judging.txt" || code=$?
+    "$EVO_RUN" evaluate --estimate "$1/trajectory.txt" "${covariances[@]}" --ground-truth "$truth" \
+      --align "$alignments" --out "$1/judged" --no-plots --quiet >/dev/null 2>"$1/judging.txt" || code=$?
     [ "$code" -eq 7 ] || break
   done
   if [ "$code" -eq 0 ]; then rm "$1/judging.txt"; fi

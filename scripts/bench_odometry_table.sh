@@ -5,6 +5,7 @@ header=scene,seed,config,recorded_s,path_m,coverage_share,coverage_since_start_s
 header+=,mean_planar_percent,max_planar_percent,sim3_mean_planar_percent,sim3_max_planar_percent,sim3_ape_rmse_percent
 header+=,rotation_deg_per_m,error_before_bump_percent,error_after_bump_percent,bump_growth
 header+=,own_scale_error_before_bump_percent,own_scale_error_after_bump_percent,own_scale_bump_growth
+header+=,nees_translation,nees_rotation,nees_pose
 header+=,run_x_real_time,odometry_x_real_time,cpu_s,failure
 
 # row SCENE SEED CONFIG RESULTS FOLDER
@@ -30,6 +31,9 @@ row() {
       "$(summary_cell "$judged/summary.csv" sim3 path_m)" 100)"
     "$(rotation_drift "$judged/metrics.csv")" "$before" "$after" "$(ratio "$after" "$before")"
     "$own_before" "$own_after" "$(ratio "$own_after" "$own_before")"
+    "$(summary_cell "$judged/summary.csv" origin-scale nees_translation)"
+    "$(summary_cell "$judged/summary.csv" origin-scale nees_rotation)"
+    "$(summary_cell "$judged/summary.csv" origin-scale nees_pose)"
     "$(times_real_time "$recorded" "$(json "$made" track)" "$(json "$made" odometry)")"
     "$(ratio "$recorded" "$(json "$made" odometry)")"
     "$(json "$made" cpu_time_s)" "$(failure_of "$results")"
@@ -156,10 +160,11 @@ print_tables() {
           printf "%s%s, %d %s, %.3g s, %.3g m\n", (row > 1 ? "\n" : ""), scene[row], seeds[row],
             (seeds[row] > 1 ? "seeds: median (worst)" : "run"), value[row, "recorded_s_median"],
             value[row, "path_m_median"]
-          printf "%-" width "s%14s%10s%15s%15s%15s%15s%15s%15s%15s%15s%15s\n", "", "covered", "anew", "origin-scale:",
-            "largest", "sim3: mean", "largest", "rotation", "over a bump", "its own scale", "run, x real", "odometry"
-          printf "%-" width "s%14s%10s%15s%15s%15s%15s%15s%15s%15s%15s%15s\n", "", "%", "", "mean planar, %", "planar, %",
-            "planar, %", "planar, %", "deg/100 m", "growth", "growth", "time", "alone"
+          printf "%-" width "s%14s%10s%15s%15s%15s%15s%15s%15s%15s%15s%15s%15s\n", "", "covered", "anew", "origin-scale:",
+            "largest", "sim3: mean", "largest", "rotation", "over a bump", "its own scale", "errors over", "run, x real",
+            "odometry"
+          printf "%-" width "s%14s%10s%15s%15s%15s%15s%15s%15s%15s%15s%15s%15s\n", "", "%", "", "mean planar, %",
+            "planar, %", "planar, %", "planar, %", "deg/100 m", "growth", "growth", "covariance", "time", "alone"
         }
         printf "%-" width "s", config[row]
         cell(14, "%.1f", "coverage_since_start_share", 100); cell(10, "%d", "rebootstraps")
@@ -167,6 +172,7 @@ print_tables() {
         cell(15, "%.3g", "sim3_mean_planar_percent"); cell(15, "%.3g", "sim3_max_planar_percent")
         cell(15, "%.3g", "rotation_deg_per_m", 100); cell(15, "%.2f", "bump_growth")
         cell(15, "%.2f", "own_scale_bump_growth")
+        cell(15, "%.2f", "nees_pose")
         cell(15, "%.1f", "run_x_real_time"); cell(15, "%.1f", "odometry_x_real_time")
         print (failures[row] > 0 ? "  failed: " failures[row] " of " seeds[row] : "")
       }
@@ -180,6 +186,11 @@ targets='
   driving_day:60         max_planar_percent          median  <=  0.4   0.2
   driving_day:60         bump_growth                 median  <=  1.5   -
   driving_day:60         own_scale_bump_growth       median  <=  1.5   -
+  driving_day:60         nees_pose                   median  >=  0.5   -
+  driving_day:60         nees_pose                   median  <=  2     -
+  bumps                  nees_pose                   median  <=  2     -
+  driving_night          nees_pose                   median  <=  2     -
+  handheld_boxes         nees_pose                   median  <=  2     -
   bumps                  rebootstraps                worst   <=  0     -
   bumps                  frames_lost                 worst   <=  0     -
   bumps                  error_over_that_of_level    median  <=  1.5   -

@@ -164,7 +164,35 @@ TEST_F(PipelineTest, StageByStageGivesWhatRunGives) {
                 Quote(Sample("camchain-imucam-street.yaml")) + To("stages")),
             0)
       << err;
-  ExpectSameBytes("whole", "stages", {"tracks.txt", "lifetime.csv", "trajectory.txt", "map.ply"});
+  ExpectSameBytes("whole", "stages",
+                  {"tracks.txt", "lifetime.csv", "trajectory.txt", "map.ply", "pose_covariance.csv"});
+  const std::string evaluate = "evaluate --no-plots --estimate " + Quote(folder / "stages" / "trajectory.txt") +
+                               " --ground-truth " + Quote(Sample("street_gt.hdf5")) + " --covariances ";
+  ASSERT_EQ(Run(evaluate + Quote(folder / "stages" / "pose_covariance.csv") + To("judged")), 0) << err;
+  const std::string consistency = Summary("whole", "origin-scale")["nees_pose"];
+  EXPECT_FALSE(consistency.empty());
+  EXPECT_EQ(Summary("judged", "origin-scale")["nees_pose"].substr(0, 6), consistency.substr(0, 6));
+  EXPECT_EQ(Refusal(evaluate + Quote(folder / "stages" / "trajectory.txt") + To("refused")), 4);
+}
+
+TEST_F(PipelineTest, CovariancesAreHonestOnSimulatedDrives) {
+  // The squared error of each drive's last poses has six degrees of freedom, those before err with them: 18 in all. The
+  // bounds are those of chi-squared, over its degrees of freedom, at 0.1 % to either side.
+  constexpr int kDrives = 3;
+  constexpr double kLowest = 0.27, kHighest = 2.35;
+  double mean = 0.0;
+  for (int seed = 31; seed < 31 + kDrives; ++seed) {
+    const std::string drive = "drive " + std::to_string(seed);
+    ASSERT_EQ(Run("simulate -q " + Quote(std::string(EVO_SOURCE_DIR) + "/configs/scenes/driving_day.yaml") +
+                  " --from 20 --duration 2 --seed " + std::to_string(seed) +
+                  " --set simulation.depth_hz=0 --set simulation.image_hz=0 --set simulation.samples=1" + To(drive)),
+              0)
+        << err;
+    ASSERT_EQ(Run("run -q --no-plots --events " + Quote(folder / drive) + To(drive + " run")), 0) << err;
+    mean += std::stod(Summary(drive + " run", "origin-scale")["nees_pose"]) / kDrives;
+  }
+  EXPECT_GT(mean, kLowest) << "they are too large";
+  EXPECT_LT(mean, kHighest) << "they are too small";
 }
 
 TEST_F(PipelineTest, FourFramesInTheMiddleAreDrawnUnlessThereShallBeNoPlots) {
