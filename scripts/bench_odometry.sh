@@ -24,6 +24,7 @@ ablations=(
   odometry.depth_filter.old_key_frames=0
   odometry.max_outliers=1000
   tracker.ego_motion=false
+  tracker.epipolar_filter=false
   tracker.follow_jolts=false
   tracker.restore_shake=false
   tracker.smallest_information=0

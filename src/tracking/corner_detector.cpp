@@ -200,7 +200,8 @@ cv::Mat CorrectedEventImage(const EventHistory& history, TimeNs t, const FlowFie
 }
 
 std::vector<Eigen::Vector2d> DetectCorners(const cv::Mat& image, const std::vector<Eigen::Vector2d>& taken, int count,
-                                           double fewest_events, const TrackerOptions& options, ThreadPool* pool) {
+                                           double fewest_events, const TrackerOptions& options, ThreadPool* pool,
+                                           const std::function<bool(const Eigen::Vector2d&)>& is_wanted) {
   thread_local Harris harris;
   harris.Respond(image, pool);
   std::vector<Corner> corners = LocalMaxima(harris, image.cols, image.rows, options.border_px);
@@ -209,12 +210,13 @@ std::vector<Eigen::Vector2d> DetectCorners(const cv::Mat& image, const std::vect
   const auto weakest = static_cast<float>(options.corner_share * corners[strong].strength);
   std::erase_if(corners, [&](const Corner& corner) { return corner.strength < weakest; });
   // Asked only of corners that are tried: most never are.
-  const auto has_events = [&](const Corner& corner) {
-    return EventsAround(image, corner.x, corner.y, options.patch_radius_px) >= fewest_events;
+  const auto fits = [&](const Corner& corner) {
+    return is_wanted({corner.x, corner.y}) &&
+           EventsAround(image, corner.x, corner.y, options.patch_radius_px) >= fewest_events;
   };
   CornerSelection selection(image.cols, image.rows, taken);
   for (const double spacing_px : {options.corner_spacing_px, options.corner_closest_px}) {
-    selection.Add(corners, static_cast<std::size_t>(std::max(count, 0)), spacing_px, has_events);
+    selection.Add(corners, static_cast<std::size_t>(std::max(count, 0)), spacing_px, fits);
   }
   return selection.found();
 }

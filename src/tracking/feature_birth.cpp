@@ -35,7 +35,10 @@ void FeatureTracker::Refill(const EventHistory& history, TimeNs t) {
   const double fewest_events = options_.fewest_events * options_.corner_window_motion_px / options_.window_motion_px;
   const auto missing = static_cast<std::size_t>(options_.features) - features_.size();
   const auto candidates = static_cast<int>(kCandidates * static_cast<double>(missing));
-  const auto corners = DetectCorners(image, taken, candidates, fewest_events, options_, pool_);
+  const auto stays = [&](const Eigen::Vector2d& corner) {
+    return IsInside(corner + options_.shortest_life_s * flow_field_.At(corner.x(), corner.y()));
+  };
+  const auto corners = DetectCorners(image, taken, candidates, fewest_events, options_, pool_, stays);
   std::vector<std::optional<TrackedFeature>> born(corners.size());
   const std::vector<DepthSample> depths = Depths();
   pool_->ForEach(corners.size(), [&](std::size_t i) { born[i] = Birth(history, t, corners[i], depths); });
@@ -74,6 +77,7 @@ std::optional<TrackedFeature> FeatureTracker::Birth(const EventHistory& history,
   if (events.size() < static_cast<std::size_t>(options_.fewest_events)) return std::nullopt;
   const double inverse_depth = ego_motion_.InverseDepth({position, flow});
   TrackedFeature feature{.position = position,
+                         .filtered = position,
                          .flow = flow,
                          .inverse_depth = inverse_depth,
                          .slope = SurfaceSlope(depths, {position, inverse_depth}).value_or(Eigen::Vector2d::Zero()),

@@ -50,7 +50,7 @@ void FeatureTracker::Process(const EventHistory& history, TimeNs t) {
 Tracks FeatureTracker::Observations() const {
   Tracks observations;
   for (const auto& feature : features_) {
-    observations.push_back({feature.id, *last_, feature.position.x(), feature.position.y()});
+    observations.push_back({feature.id, *last_, feature.filtered.x(), feature.filtered.y()});
   }
   return observations;
 }
@@ -76,9 +76,11 @@ void FeatureTracker::Track(const EventHistory& history, TimeNs t) {
     if (jolt.motion_px > kJoltPx) AlignAll(history, t, jolt);
   }
   const double step_s = ToSeconds(t - *last_);
+  const std::vector<Eigen::Vector2d> filtered = FilteredPositions(step_s);
   std::vector<char> alive(features_.size());
   pool_->ForEach(
       features_.size(), [&](std::size_t i) { alive[i] = Advance(alignments_[i], step_s, &features_[i]) ? 1 : 0; }, 4);
+  for (std::size_t i = 0; i < features_.size(); ++i) features_[i].filtered = filtered[i];
   std::size_t kept = 0;
   for (std::size_t i = 0; i < features_.size(); ++i) {
     if (!alive[i]) continue;
@@ -92,6 +94,23 @@ void FeatureTracker::AlignAll(const EventHistory& history, TimeNs t, const Jolt&
   if (alignments_.size() < features_.size()) alignments_.resize(features_.size());
   pool_->ForEach(
       features_.size(), [&](std::size_t i) { Align(history, t, jolt, features_[i], &alignments_[i]); }, 4);
+}
+
+std::vector<Eigen::Vector2d> FeatureTracker::FilteredPositions(double step_s) {
+  std::vector<FeatureStep> steps;
+  for (std::size_t i = 0; i < features_.size(); ++i) {
+    const FeatureAlignment& alignment = alignments_[i];
+    const bool is_found = alignment.state == FeatureAlignment::State::kFound;
+    const Eigen::Vector2d now = is_found ? alignment.position + alignment.motion.offset : alignment.position;
+    steps.push_back(
+        {features_[i].filtered, now, is_found ? ego_motion_.InverseDepth({now, alignment.motion.flow}) : 0.0});
+  }
+  if (options_.epipolar_filter && ego_motion_.known()) {
+    return epipolar_filter_.Filter(ego_motion_.motion(), ego_motion_.lens(), step_s, steps);
+  }
+  std::vector<Eigen::Vector2d> positions;
+  for (const auto& step : steps) positions.push_back(step.now);
+  return positions;
 }
 
 std::vector<UnexpectedMotion> FeatureTracker::UnexpectedMotions() const {
@@ -173,9 +192,13 @@ bool FeatureTracker::Advance(const FeatureAlignment& alignment, double step_s, T
     feature->flow = kSlowdown * start.flow;
     feature->told_flow = feature->flow;
   }
-  const double b = options_.border_px;
-  const auto& p = feature->position;
-  return p.x() >= b && p.y() >= b && p.x() <= width_ - 1 - b && p.y() <= height_ - 1 - b;
+  return IsInside(feature->position);
+}
+
+bool FeatureTracker::IsInside(const Eigen::Vector2d& position) const {
+  const double border = options_.border_px;
+  return position.x() >= border && position.y() >= border && position.x() <= width_ - 1 - border &&
+         position.y() <= height_ - 1 - border;
 }
 
 void FeatureTracker::LearnDepths(double step_s) {

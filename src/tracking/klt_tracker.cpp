@@ -86,7 +86,8 @@ void KltTracker::Refill(const cv::Mat& events) {
   std::vector<Eigen::Vector2d> taken;
   for (const auto& feature : features_) taken.emplace_back(feature.position.x, feature.position.y);
   const int missing = options_.features - static_cast<int>(features_.size());
-  for (const auto& corner : DetectCorners(events, taken, missing, 0.0, options_, pool_)) {
+  for (const auto& corner :
+       DetectCorners(events, taken, missing, 0.0, options_, pool_, [](const auto&) { return true; })) {
     features_.push_back(
         {next_id_++, cv::Point2f(static_cast<float>(corner.x()), static_cast<float>(corner.y())), true});
   }

@@ -39,6 +39,8 @@ void Register(Parameters& parameters, TrackerOptions& o) {
                  "where all turn unexpectedly, align them once more, expecting that");
   parameters.Add("tracker.restore_shake", &o.restore_shake,
                  "give back what windows smooth away when the camera shakes");
+  parameters.Add("tracker.epipolar_filter", &o.epipolar_filter,
+                 "take from the positions what they err by across their epipolar lines");
   parameters.Add("tracker.use_polarity", &o.use_polarity, "associate events of equal sign only");
   parameters.Add("tracker.fewest_inliers", &o.fewest_inliers, 0.0, 1.0, "share of events that the template explains");
   parameters.Add("tracker.largest_residual_px", &o.largest_residual_px, 0.1, 20.0,
@@ -53,6 +55,8 @@ void Register(Parameters& parameters, TrackerOptions& o) {
   parameters.Add("tracker.corner_window_motion_px", &o.corner_window_motion_px, 0.5, 20.0, "in the corner image (px)");
   parameters.Add("tracker.smallest_information", &o.smallest_information, 0.0, 2.0,
                  "of an event about a new feature's position, in the worst direction, as a share of the usual");
+  parameters.Add("tracker.shortest_life_s", &o.shortest_life_s, 0.0, 10.0,
+                 "a corner that leaves the image sooner is not taken (s)");
   parameters.Add("tracker.fewest_cells", &o.fewest_cells, 0.0, 1000.0, "that a template's events fill (px)");
   parameters.Add("tracker.klt.events", &o.klt.events, 100, 1000000, "newest events in an image, at most");
   parameters.Add("tracker.klt.longest_window_s", &o.klt.longest_window_s, 0.001, 2.0, "and none older than this (s)");

@@ -10,6 +10,8 @@
 namespace evo {
 namespace {
 
+const auto kAny = [](const Eigen::Vector2d&) { return true; };
+
 using Eigen::Vector2d;
 
 cv::Mat Squares() {
@@ -23,7 +25,7 @@ cv::Mat Squares() {
 std::vector<Vector2d> Detect(const cv::Mat& image, const std::vector<Vector2d>& taken, int count,
                              const TrackerOptions& options = {}, int threads = 2) {
   ThreadPool pool(threads);
-  return DetectCorners(image, taken, count, 0.0, options, &pool);
+  return DetectCorners(image, taken, count, 0.0, options, &pool, kAny);
 }
 
 TEST(DetectCorners, FindsTheCornersOfSquaresAndNothingElse) {
@@ -75,13 +77,24 @@ TEST(DetectCorners, SpreadsAFewOverTheWholeImage) {
 
 TEST(DetectCorners, FindsNothingInAnEmptyImage) { EXPECT_TRUE(Detect(cv::Mat::zeros(50, 50, CV_32F), {}, 10).empty()); }
 
+TEST(DetectCorners, LeavesOutWhatIsNotWanted) {
+  cv::Mat image = cv::Mat::zeros(100, 100, CV_32F);
+  for (const int x : {20, 60}) image(cv::Rect(x, 40, 20, 20)) = 5.0;
+  const TrackerOptions options;
+  ThreadPool pool(1);
+  const auto corners = DetectCorners(image, {}, 20, 0.0, options, &pool,
+                                     [](const Eigen::Vector2d& corner) { return corner.x() > 50.0; });
+  ASSERT_FALSE(corners.empty());
+  for (const auto& corner : corners) EXPECT_GT(corner.x(), 50.0);
+}
+
 TEST(DetectCorners, LeavesOutPatchesWithTooFewEvents) {
   cv::Mat image = Squares();
   image(cv::Rect(0, 0, 80, 120)) *= 0.1f;  // a corner's patch holds about 400 events, on the left 40
   TrackerOptions options;
   options.corner_share = 0.0;
   ThreadPool pool(1);
-  const auto corners = DetectCorners(image, {}, 100, 200.0, options, &pool);
+  const auto corners = DetectCorners(image, {}, 100, 200.0, options, &pool, kAny);
   EXPECT_GE(corners.size(), 10u);
   for (const auto& corner : corners) EXPECT_GE(corner.x(), 70.0);
 }

@@ -31,6 +31,7 @@ class EgoMotion {
   void Update(const std::vector<FlowSample>& features, double step_s);
   /// Whether the flows determined a motion with a direction.
   bool known() const { return known_; }
+  const CameraMotion& motion() const { return motion_; }
   const LensGrid& lens() const { return lens_; }
   const Eigen::Vector3d& direction() const { return motion_.direction; }
   const Eigen::Vector3d& turn_rate() const { return motion_.turn_rate; }  ///< of the world about the camera, rad/s

@@ -10,6 +10,7 @@
 #include "evo/tracking/density_map.hpp"
 #include "evo/tracking/ego_motion.hpp"
 #include "evo/tracking/em_affine.hpp"
+#include "evo/tracking/epipolar_filter.hpp"
 #include "evo/tracking/flow_field.hpp"
 #include "evo/tracking/jolt.hpp"
 #include "evo/tracking/surface_slope.hpp"
@@ -21,6 +22,7 @@ namespace evo {
 struct TrackedFeature {
   std::int64_t id = 0;
   Eigen::Vector2d position;                               ///< px, at the stamp of the last event frame
+  Eigen::Vector2d filtered;                               ///< the same, see EpipolarFilter: what is reported
   Eigen::Vector2d flow;                                   ///< px/s
   Eigen::Matrix2d linear = Eigen::Matrix2d::Identity();   ///< template to sensor
   Eigen::Vector2d perspective = Eigen::Vector2d::Zero();  ///< of the same, see PatchMotion
@@ -71,12 +73,16 @@ class FeatureTracker : public Tracker {
   void Align(const EventHistory& history, TimeNs t, const Jolt& jolt, const TrackedFeature& feature,
              FeatureAlignment* alignment) const;
   void AlignAll(const EventHistory& history, TimeNs t, const Jolt& jolt);
+  /// Where all features are reported, after the alignment and before they advance.
+  std::vector<Eigen::Vector2d> FilteredPositions(double step_s);
   std::vector<UnexpectedMotion> UnexpectedMotions() const;
   /// Aligns the events to the feature's template from `start`; false if they do not fit it.
   bool Fit(const TrackedFeature& feature, bool coarse_first, FeatureAlignment* alignment) const;
   bool MayRest(const FeatureAlignment& alignment, const TrackedFeature& feature) const;
   /// False if the feature is lost.
   bool Advance(const FeatureAlignment& alignment, double step_s, TrackedFeature* feature) const;
+  /// Whether a place is far enough from the sensor's edge for a feature.
+  bool IsInside(const Eigen::Vector2d& position) const;
   /// Of all features, and from them the slopes of the planes that they lie on.
   void LearnDepths(double step_s);
   std::vector<DepthSample> Depths() const;
@@ -97,6 +103,7 @@ class FeatureTracker : public Tracker {
   int height_;
   ThreadPool* pool_;
   EgoMotion ego_motion_;
+  EpipolarFilter epipolar_filter_;
   FlowField flow_field_;
   RefillPolicy refill_;
   double usual_information_ = 0.0;  // of features at birth, those included that were not good enough

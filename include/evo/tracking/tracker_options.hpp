@@ -46,6 +46,7 @@ struct TrackerOptions {
   bool ego_motion = true;        ///< let the camera's own motion predict how patches move, grow and bend
   bool follow_jolts = true;      ///< where all turn unexpectedly, align them once more, expecting that
   bool restore_shake = true;     ///< give back to the positions what windows smooth away while the camera shakes
+  bool epipolar_filter = true;   ///< take from the positions what they err by across their epipolar lines
   bool use_polarity = true;      ///< associate events only with template events of their own sign
 
   // When a feature is lost.
@@ -63,7 +64,8 @@ struct TrackerOptions {
   /// Of an event about the position of a new feature, as a share of the mean over all that were tried: its pattern must
   /// neither slide nor blur. About half of them are refused at 1.
   double smallest_information = 0.95;
-  double fewest_cells = 8.0;  ///< px that a template's events fill: a hot pixel fills one
+  double shortest_life_s = 0.08;  ///< a corner that leaves the image sooner than this is not taken
+  double fewest_cells = 8.0;      ///< px that a template's events fill: a hot pixel fills one
 
   KltOptions klt;
 };

@@ -1,0 +1,132 @@
+#include "evo/tracking/epipolar_filter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <vector>
+
+#include "evo/geometry/known_cameras.hpp"
+#include "evo/geometry/se3.hpp"
+
+namespace evo {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kStepS = 0.02;
+constexpr double kNoisePx = 0.15;
+
+double Median(std::vector<double> values) {
+  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
+  return values[values.size() / 2];
+}
+
+/// Errors after 30 frames, px, of positions with noise: as they came, and filtered.
+struct Errors {
+  std::vector<double> across_raw, across, along_raw, along;
+};
+
+/// A camera drives by resting points at 1 unit a second, its heading at frame k is heading(k), and it turns and shakes.
+/// The filter is told one and the same heading, straight ahead.
+class Drive {
+ public:
+  Drive(int points, unsigned seed) : random_(seed) {
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    for (int i = 0; i < points; ++i) {
+      const double z = 3.0 + 4.0 * std::abs(uniform(random_));
+      points_.emplace_back(0.5 * z * uniform(random_), 0.35 * z * uniform(random_), z);
+    }
+  }
+
+  Errors Run(const std::function<Vector3d(int)>& heading) {
+    std::normal_distribution<double> normal;
+    EpipolarFilter filter;
+    Errors errors;
+    std::vector<Vector2d> filtered;
+    for (int k = 0; k <= 30; ++k) {
+      const Vector3d turn(0.004 * normal(random_), 0.004 * normal(random_) + 0.002, 0.004 * normal(random_));
+      if (k > 0) {
+        for (auto& point : points_) point = so3::Exp(turn) * (point - kStepS * heading(k).normalized());
+      }
+      std::vector<FeatureStep> steps;
+      std::vector<Vector2d> truth, noisy;
+      for (std::size_t i = 0; i < points_.size(); ++i) {
+        truth.push_back(camera_.Project(points_[i]));
+        noisy.push_back(truth.back() + kNoisePx * Vector2d(normal(random_), normal(random_)));
+        steps.push_back({k > 0 ? filtered[i] : noisy.back(), noisy.back(), 1.0 / points_[i].z()});
+      }
+      if (k == 0) {
+        filtered = truth;
+        continue;
+      }
+      filtered = filter.Filter({Vector3d::UnitZ(), Vector3d::Zero()}, lens_, kStepS, steps);
+      if (k < 30) continue;
+      for (std::size_t i = 0; i < points_.size(); ++i) {
+        const Vector2d line = (camera_.Project(points_[i] - 0.01 * heading(k)) - truth[i]).normalized();
+        const Vector2d normal_of_line(-line.y(), line.x());
+        errors.across_raw.push_back(std::abs(normal_of_line.dot(noisy[i] - truth[i])));
+        errors.across.push_back(std::abs(normal_of_line.dot(filtered[i] - truth[i])));
+        errors.along_raw.push_back(std::abs(line.dot(noisy[i] - truth[i])));
+        errors.along.push_back(std::abs(line.dot(filtered[i] - truth[i])));
+      }
+    }
+    return errors;
+  }
+
+  std::vector<Vector3d>& points() { return points_; }
+
+ private:
+  Camera camera_{MvsecDavis346()};
+  LensGrid lens_{camera_};
+  std::mt19937 random_;
+  std::vector<Vector3d> points_;
+};
+
+TEST(EpipolarFilter, TakesAwayWhatErrsAcrossTheLines) {
+  const Errors errors = Drive(120, 1).Run([](int) { return Vector3d::UnitZ(); });
+  EXPECT_LT(Median(errors.across), 0.6 * Median(errors.across_raw));
+  EXPECT_NEAR(Median(errors.along), Median(errors.along_raw), 0.2 * Median(errors.along_raw));
+}
+
+TEST(EpipolarFilter, AWrongHeadingDoesNotPullAllFeatures) {
+  // 3 degrees off all the time: what all have in common is no error of the features.
+  const Errors errors = Drive(120, 2).Run([](int) { return Vector3d(0.05, 0.0, 1.0); });
+  EXPECT_LT(Median(errors.across), 0.8 * Median(errors.across_raw));
+}
+
+TEST(EpipolarFilter, KeepsItsHandsOffAHandHeldCamera) {
+  const auto heading = [](int k) { return Vector3d(std::sin(0.9 * k), std::cos(1.3 * k), 1.0); };
+  const Errors errors = Drive(120, 3).Run(heading);
+  EXPECT_LT(Median(errors.across), 1.3 * Median(errors.across_raw));
+}
+
+TEST(EpipolarFilter, AThingThatMovesByItselfKeepsItsPosition) {
+  const Camera camera(MvsecDavis346());
+  const LensGrid lens(camera);
+  std::vector<FeatureStep> steps;
+  for (int i = 0; i < 60; ++i) {
+    const Vector3d point(std::sin(1.0 * i), 0.6 * std::cos(1.7 * i), 2.5);
+    steps.push_back({camera.Project(point), camera.Project(point - Vector3d(0.0, 0.0, kStepS)), 1.0 / 2.5});
+  }
+  steps[7].now += Vector2d(6.0, -5.0);
+  EpipolarFilter filter;
+  const auto positions = filter.Filter({Vector3d::UnitZ(), Vector3d::Zero()}, lens, kStepS, steps);
+  EXPECT_LT((positions[7] - steps[7].now).norm(), 0.5);
+  EXPECT_LT((positions[8] - steps[8].now).norm(), 0.1);
+}
+
+TEST(EpipolarFilter, DoesNothingWithTooFewFeatures) {
+  const Camera camera(MvsecDavis346());
+  const LensGrid lens(camera);
+  std::vector<FeatureStep> steps;
+  for (int i = 0; i < 15; ++i) steps.push_back({Vector2d(20.0 * i, 100.0), Vector2d(20.0 * i + 2.0, 101.0), 0.5});
+  const auto positions = EpipolarFilter().Filter({Vector3d::UnitZ(), Vector3d::Zero()}, lens, kStepS, steps);
+  for (std::size_t i = 0; i < steps.size(); ++i) EXPECT_EQ(positions[i], steps[i].now);
+}
+
+}  // namespace
+}  // namespace evo
