@@ -263,8 +263,10 @@ Command AddEvaluateCommand(CLI::App& app) {
       ->type_name("FILE")
       ->needs(ground_truth);
   parser
-      ->add_option("--covariances", arguments->covariances,
-                   "pose_covariance.csv of the estimate: are its errors as large as it says?")
+      ->add_option(
+          "--covariances", arguments->covariances,
+          "pose_covariance.csv of the estimate: are its errors as large as it says? Fits the scale if the first "
+          "alignment does")
       ->type_name("FILE")
       ->needs("--estimate");
   AddTrackEvaluationOptions(*parser, arguments->tracks, ground_truth);

@@ -212,6 +212,11 @@ Evaluation Evaluate(const Trajectory& truth, const Trajectory& estimate, std::sp
   }
   if (!covariances.empty()) {
     evaluation.consistency = MeasureConsistency(comparison.pairs, covariances, FitsScale(alignments.front().method));
+    if (evaluation.consistency->pose.count == 0) {
+      evaluation.consistency.reset();
+      evaluation.left_out.emplace_back(
+          "the covariances: none belongs to a pose that has a true one, or the certain pose has none");
+    }
   }
   return evaluation;
 }

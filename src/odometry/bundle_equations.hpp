@@ -38,8 +38,8 @@ std::vector<InnovationStep> InnovationSteps(const BundleProblem& problem, double
 struct ErrorModel {
   std::vector<InnovationStep> steps;  ///< of all observations
   double loss_px;                     ///< Cauchy's width, of an innovation
-  /// The equations get the loss's mean second derivative, as they ought to where they tell how certain the minimum is.
-  /// Else they get its weight, which is larger: surer steps towards it.
+  /// The tracks' equations get the loss's mean second derivative, as they ought to where they tell how certain the
+  /// minimum is. Else they get its weight, which is larger: surer steps towards it.
   bool curvature = false;
 
   std::span<const InnovationStep> Steps(std::size_t begin, std::size_t end) const {

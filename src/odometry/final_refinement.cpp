@@ -128,7 +128,9 @@ RefinedPoints TakePoints(const RunBundle& run, double drift, Segment* segment) {
 /// start from their neighbours, and the frames before and after the segment are taken in as far as they can be tracked.
 class PoseFiller {
  public:
-  PoseFiller(const std::vector<Frame>& frames, const RefinedPoints& points) : frames_(frames), points_(points) {}
+  /// Points err alike as tracks do: `alike` of them tell as much as one.
+  PoseFiller(const std::vector<Frame>& frames, const RefinedPoints& points, double alike)
+      : frames_(frames), points_(points), alike_(alike) {}
 
   /// From `frame` on in steps of `direction` up to but without `end`, while the poses can be estimated and are not far
   /// more uncertain than usual: the first pose, known by a few tracks just born, would turn the whole path.
@@ -149,7 +151,7 @@ class PoseFiller {
     const PoseEstimate estimate = points_.EstimatePose(frames_, frame, start);
     if (!points_.Accepts(estimate, min_inlier_ratio)) return false;
     // The points are as uncertain as the bundle's poses nearby.
-    poses_[frame] = {estimate.T_cam_world, estimate.inlier_count, estimate.covariance, false};
+    poses_[frame] = {estimate.T_cam_world, estimate.inlier_count, alike_ * estimate.covariance, false};
     turns_.push_back(Turn(estimate));
     return true;
   }
@@ -190,6 +192,7 @@ class PoseFiller {
 
   const std::vector<Frame>& frames_;
   const RefinedPoints& points_;
+  double alike_;
   std::map<int, Pose> poses_;
   std::vector<double> turns_;  // of all poses
 };
@@ -214,7 +217,7 @@ void Register(Parameters& parameters, FinalRefinementOptions& options) {
 
 std::vector<Matrix6d> Segment::Covariances(bool scale_is_free) const {
   std::vector<Matrix6d> covariances;
-  if (adjusted.empty()) return covariances;
+  if (adjusted.empty() || !uncertainty.known()) return covariances;
   const auto of_adjusted = uncertainty.Covariances(0, scale_is_free);
   std::size_t k = 0;
   for (std::size_t i = 0; i < besides.size(); ++i) {
@@ -236,7 +239,7 @@ void RefineSegment(const FinalRefinementOptions& options, const std::vector<Fram
   const auto [first, end] = segment->uncertainty.CertainStretch();
   segment->uncertainty.Cut(first, end);
   const RefinedPoints points = TakePoints(run, options.drift, segment);
-  PoseFiller filler(frames, points);
+  PoseFiller filler(frames, points, options.common_errors.alike);
   const auto& poses = run.bundle.T_cam_world;
   const int end_frame = 1 + segment->frames[end == poses.size() ? segment->frames.size() - 1 : run.frames[end - 1]];
   for (std::size_t k = first; k < end; ++k) {

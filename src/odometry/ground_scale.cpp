@@ -115,8 +115,8 @@ void MovePoints(const std::vector<Frame>& frames, const std::vector<SE3>& old_po
   }
 }
 
-/// Every step from pose to pose with the scale that holds there, which has that relative error, another one after a way
-/// of `reach` in the new unit.
+/// Every step from pose to pose with the scale that holds there, see PoseUncertainty::HoldScale; `reach` is in the new
+/// unit.
 void Rescale(const std::vector<double>& scales, double error, double reach, const std::vector<Frame>& frames,
              std::vector<Segment>* segments) {
   std::size_t pose = 0;
@@ -170,8 +170,8 @@ GroundScale ScaleByGround(const GroundOptions& options, const std::vector<Frame>
   std::vector<double> scales;
   for (const double inverse : heights->inverse) scales.push_back(height * inverse);
   const GroundProfile& profile = heights->profile;
-  // The heights are smoothed over so long a way that their drift over it is as large as their error.
-  const double reach = height * std::max(2.0 * kWindow, std::pow(profile.error / options.drift, 2));
+  // A random walk that is smoothed to an error of so much errs alike over so long a way.
+  const double reach = height * std::max(2.0 * kWindow, 2.0 * std::pow(profile.error / options.drift, 2));
   Rescale(scales, profile.error, reach, frames, segments);
   const auto [lowest, highest] = std::ranges::minmax(scales);
   const GroundScale scale{true, known, profile.tracks, profile.covered, profile.error, lowest, highest};

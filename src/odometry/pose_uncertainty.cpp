@@ -22,10 +22,12 @@ Eigen::Index Row(std::size_t pose) { return 6 * static_cast<Eigen::Index>(pose);
 /// +1 or -1, the same on every machine, unlike the numbers of distributions.
 class Signs {
  public:
+  explicit Signs(unsigned seed) : random_(seed) {}
+
   double Next() { return random_() % 2 == 0 ? 1.0 : -1.0; }
 
  private:
-  std::mt19937 random_{1};
+  std::mt19937 random_;
 };
 
 /// Ad(T) in twists (translation, rotation): T Exp(d) = Exp(Ad(T) d) T.
@@ -70,13 +72,16 @@ void Register(Parameters& parameters, CommonErrors& options) {
 
 PoseUncertainty::PoseUncertainty(const CommonErrors& common, const BundleOptions& options, const BundleProblem& problem,
                                  ThreadPool* pool)
-    : poses_(problem.T_cam_world), samples_(Eigen::MatrixXd::Zero(Row(problem.T_cam_world.size()), kSamples)) {
+    : certain_(0, problem.T_cam_world.size()),
+      poses_(problem.T_cam_world),
+      samples_(Eigen::MatrixXd::Zero(Row(problem.T_cam_world.size()), kSamples)) {
   const auto begin = FirstObservations(problem);
   const ErrorModel model{InnovationSteps(problem, options.drift), options.loss_px, true};
   BundleEquations equations(problem, model, begin, pool);
   equations.Linearize();
-  if (!equations.Factorize()) return;
-  Signs random;
+  known_ = equations.Factorize();
+  if (!known_) return;
+  Signs random(1);
   std::vector<std::vector<double>> signs(kSamples, std::vector<double>(problem.points.size()));
   for (auto& of_sample : signs) {
     for (double& sign : of_sample) sign = random.Next();
@@ -85,6 +90,7 @@ PoseUncertainty::PoseUncertainty(const CommonErrors& common, const BundleOptions
     const Eigen::VectorXd steps = std::sqrt(common.alike) * equations.StepsIf(signs[k]);
     samples_.col(static_cast<Eigen::Index>(k)).tail(steps.size()) = steps;
   });
+  certain_ = FindCertainStretch();
 
   // A turn of the whole image is taken for one of the camera, the whole path behind it turns along.
   Eigen::Matrix<double, 3, Eigen::Dynamic> axes(3, kSamples);
@@ -113,7 +119,7 @@ void PoseUncertainty::HoldScale(const std::vector<SE3>& T_cam_world, double erro
     length[i] = (centres[i] - centres[i - 1]).norm();
     way[i] = way[i - 1] + length[i];
   }
-  Signs random;
+  Signs random(2);
   std::vector<double> too_long(count);  // of the way to each pose
   for (Eigen::Index k = 0; k < samples_.cols(); ++k) {
     const auto moved = [&](std::size_t i) -> Eigen::Vector3d {
@@ -172,7 +178,7 @@ double PoseUncertainty::Turn(std::size_t from, std::size_t to) const {
   return Relative(to, from).bottomRows<3>().norm() / std::sqrt(static_cast<double>(samples_.cols()));
 }
 
-std::pair<std::size_t, std::size_t> PoseUncertainty::CertainStretch() const {
+std::pair<std::size_t, std::size_t> PoseUncertainty::FindCertainStretch() const {
   const std::size_t count = poses_.size();
   const std::size_t reach = std::min(kReach, count / 4);
   if (reach == 0) return {0, count};

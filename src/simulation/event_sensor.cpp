@@ -253,7 +253,7 @@ void EventSensor::Emit(std::size_t pixel, TimeNs t, int sign, EventColumns* even
     const TimeNs since = (t - row_phase_[row]) % row_period_;
     if (since != 0) t += (since < 0 ? 0 : row_period_) - since;
   }
-  t -= t % kMicrosecond;
+  t -= (t % kMicrosecond + kMicrosecond) % kMicrosecond;  // down, before 0 too
   events->push_back(t, static_cast<std::uint16_t>(pixel % width_), static_cast<std::uint16_t>(row),
                     static_cast<std::int8_t>(sign));
 }

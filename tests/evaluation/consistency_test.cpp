@@ -65,10 +65,27 @@ TEST(Consistency, AFixedScaleIsJudgedToo) {
   EXPECT_GT(MeasureConsistency(run.pairs, run.covariances, false).translation.mean, 10.0);
 }
 
+TEST(Consistency, ARunThatWasStartedAnewIsJudgedPieceByPiece) {
+  const Noisy first = MakeRun(400, 0.4, 5);
+  Noisy second = MakeRun(400, 1.7, 6);  // another scale
+  Noisy both = first;
+  for (std::size_t i = 0; i < second.pairs.size(); ++i) {
+    const TimeNs later = second.covariances[i].t + 400 * TimeNs{20'000'000};
+    second.pairs[i].t_estimate = second.pairs[i].t_truth = second.covariances[i].t = later;
+    both.pairs.push_back(second.pairs[i]);
+    both.covariances.push_back(second.covariances[i]);
+  }
+  const auto consistency = MeasureConsistency(both.pairs, both.covariances, true);
+  EXPECT_EQ(consistency.pose.count, 798);
+  EXPECT_NEAR(consistency.pose.mean, 1.0, 0.2);
+}
+
 TEST(Consistency, PosesWithoutACovarianceDoNotCount) {
   Noisy run = MakeRun(100, 1.0, 4);
   std::erase_if(run.covariances, [](const StampedCovariance& row) { return row.t % 40'000'000 != 0; });
   EXPECT_EQ(MeasureConsistency(run.pairs, run.covariances, true).pose.count, 49);
+  run.covariances.erase(run.covariances.begin());
+  EXPECT_EQ(MeasureConsistency(run.pairs, run.covariances, true).pose.count, 0) << "relative to what?";
   const auto none = MeasureConsistency(run.pairs, {}, true);
   EXPECT_EQ(none.pose.count, 0);
   EXPECT_TRUE(std::isnan(none.pose.mean));

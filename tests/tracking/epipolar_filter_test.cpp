@@ -77,8 +77,6 @@ class Drive {
     return errors;
   }
 
-  std::vector<Vector3d>& points() { return points_; }
-
  private:
   Camera camera_{MvsecDavis346()};
   LensGrid lens_{camera_};

@@ -20,8 +20,9 @@ struct Consistency {
 };
 
 /// `covariances`, in order of time, belong to the pairs with the same t_estimate; pairs without one do not count. The
-/// estimate is laid over the truth at the pose that is certain, whose covariance is zero (the first, if there is none);
-/// if `fit_scale`, then scaled about it by least squares, as the covariances of a monocular path are meant.
+/// estimate is laid over the truth at the pose that is certain, whose covariance is zero; if `fit_scale`, then scaled
+/// about it by least squares, as the covariances of a monocular path are meant. A run that was started anew has several
+/// such poses, each with those after it. Without any there are no errors, and the statistics are empty.
 Consistency MeasureConsistency(std::span<const PosePair> pairs, std::span<const StampedCovariance> covariances,
                                bool fit_scale);
 

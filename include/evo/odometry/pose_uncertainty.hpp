@@ -20,10 +20,10 @@ struct CommonErrors {
 void Register(Parameters& parameters, CommonErrors& options);
 
 /// How far the poses of an adjusted bundle may be off, from what is left of the errors: H^-1 (sum over tracks of g g^T)
-/// H^-1, H the reduced system and g one track's part of its gradient. So whatever the errors of one track have in
-/// common counts, and only the tracks have to be independent but for what is known to be common (a sandwich estimator
-/// with clusters; K.-Y. Liang, S. L. Zeger, Biometrika 1986). The sum is taken by random signs of the tracks, each of
-/// which gives one sample of all poses' errors.
+/// H^-1, H the reduced system and g the part of its gradient of one track, or of one piece of a long track. So
+/// whatever the errors of one have in common counts, and only the tracks have to be independent but for what is known
+/// to be common (a sandwich estimator with clusters; K.-Y. Liang, S. L. Zeger, Biometrika 1986). The sum is taken by
+/// random signs of the tracks, each of which gives one sample of all poses' errors.
 class PoseUncertainty {
  public:
   PoseUncertainty() = default;
@@ -32,19 +32,21 @@ class PoseUncertainty {
                   ThreadPool* pool = nullptr);
 
   /// [begin, end) of the poses without those at either end, at most a tenth of all, whose turn towards the others is
-  /// far more uncertain than is usual within the run: a few tracks, just born or the last that are left, know little,
-  /// and the first pose turns the whole path.
-  std::pair<std::size_t, std::size_t> CertainStretch() const;
+  /// much more uncertain by the tracks than is usual within the run: a few, just born or the last that are left, know
+  /// little, and the first pose turns the whole path.
+  std::pair<std::size_t, std::size_t> CertainStretch() const { return certain_; }
+  /// False if the system was singular: then nothing is known.
+  bool known() const { return known_; }
   /// Forgets all poses but [begin, end).
   void Cut(std::size_t begin, std::size_t end);
 
-  /// From elsewhere the scale along the path is known to the relative standard deviation `error`, independently after
-  /// a way of `reach`. `T_cam_world` are the poses with that scale, of the same rotations.
+  /// From elsewhere the scale along the path is known to the relative standard deviation `error`, whose correlation
+  /// falls to 1 / e over a way of `reach`. `T_cam_world` are the poses with that scale, of the same rotations.
   void HoldScale(const std::vector<SE3>& T_cam_world, double error, double reach);
 
   /// Of the left twists (translation, rotation) of all poses relative to `origin`, which itself has none. The scale is
   /// the problem's, or, if `scale_is_free`, the one that fits the true path best by least squares with the origin held,
-  /// as where the path is aligned with it so. All zero if the system was singular.
+  /// as where the path is aligned with it so.
   std::vector<Matrix6d> Covariances(std::size_t origin, bool scale_is_free) const;
   /// Standard deviation of the camera's turn from one pose to another, rad.
   double Turn(std::size_t from, std::size_t to) const;
@@ -52,9 +54,12 @@ class PoseUncertainty {
  private:
   using Rows = Eigen::Matrix<double, 6, Eigen::Dynamic>;
 
+  std::pair<std::size_t, std::size_t> FindCertainStretch() const;
   /// Of the pose's errors relative to those of `origin`.
   Rows Relative(std::size_t pose, std::size_t origin) const;
 
+  bool known_ = false;
+  std::pair<std::size_t, std::size_t> certain_;
   std::vector<SE3> poses_;
   Eigen::MatrixXd samples_;  // of the left twists' errors, six rows for every pose
 };
