@@ -101,7 +101,7 @@ std::vector<Eigen::Vector2d> FeatureTracker::FilteredPositions(double step_s) {
   for (std::size_t i = 0; i < features_.size(); ++i) {
     const FeatureAlignment& alignment = alignments_[i];
     const bool is_found = alignment.state == FeatureAlignment::State::kFound;
-    const Eigen::Vector2d now = is_found ? alignment.position + alignment.motion.offset : alignment.position;
+    const Eigen::Vector2d now = alignment.Landed();
     steps.push_back(
         {features_[i].filtered, now, is_found ? ego_motion_.InverseDepth({now, alignment.motion.flow}) : 0.0});
   }
@@ -180,7 +180,7 @@ bool FeatureTracker::Advance(const FeatureAlignment& alignment, double step_s, T
   const PatchMotion& motion = is_found ? alignment.motion : start;
   ++feature->frames;
   feature->half_window = alignment.half_window;
-  feature->position = alignment.position + motion.offset;
+  feature->position = alignment.Landed();
   feature->linear = motion.linear;
   feature->perspective = motion.perspective;
   if (is_found) {

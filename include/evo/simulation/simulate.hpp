@@ -52,11 +52,10 @@ struct SimulationCounts {
 };
 
 /// What `camera` with an event sensor sees of `scene` on its way along `motion` during [0, duration), having looked
-/// since
-/// -`lead_in`, from where on `motion` must be known, too. The tiles of the image are rendered at a rate of their own,
-/// so that nothing in them moves more than `largest_step_px` from one render to the next; between two renders the light
-/// changes linearly but for the lamps' flicker, which the sensor sees in full. Images and depth maps are rendered at
-/// their exact times. The result depends on `seed` and the options alone, not on how many threads `pool` has.
+/// since -`lead_in`, from where on `motion` must be known, too. The tiles of the image are rendered at a rate of their
+/// own, so that nothing in them moves more than `largest_step_px` from one render to the next; between two renders the
+/// light changes linearly but for the lamps' flicker, which the sensor sees in full. Images and depth maps are rendered
+/// at their exact times. The result depends on `seed` and the options alone, not on how many threads `pool` has.
 /// `progress` may be null.
 SimulationCounts Simulate(const Scene& scene, const Camera& camera, const CameraMotion& motion, TimeNs lead_in,
                           TimeNs duration, const SensorOptions& sensor, const SimulationOptions& options,

@@ -50,6 +50,9 @@ struct FeatureAlignment {
   PatchMotion motion;                       ///< aligned
   TimeNs half_window = 0;
   LocalEvents events;
+
+  /// Where the feature is now, px.
+  Eigen::Vector2d Landed() const { return state == State::kFound ? position + motion.offset : position; }
 };
 
 /// Tracks features by expectation maximisation. The positions reported are those at the very instant of the event
