@@ -23,6 +23,8 @@ constexpr double kReach = 40.0;       // heights between the camera that saw a t
 // Sideways over below, of tracks that may lie on the ground. Farther to the side there are kerbs and parked cars, and
 // near the image's border the tracks of a road drift outwards.
 constexpr double kCone = 0.8;
+// What the scale errs by besides, since tracks on a road err alike: on simulated drives lengths come out so much short.
+constexpr double kErrAlike = 0.005;
 constexpr double kShortestDrive = 10.0;  // heights, from where on a height that is not known is taken for constant
 
 /// All poses of a run in order of time.
@@ -172,7 +174,7 @@ GroundScale ScaleByGround(const GroundOptions& options, const std::vector<Frame>
   const GroundProfile& profile = heights->profile;
   // A random walk that is smoothed to an error of so much errs alike over so long a way.
   const double reach = height * std::max(2.0 * kWindow, 2.0 * std::pow(profile.error / options.drift, 2));
-  Rescale(scales, profile.error, reach, frames, segments);
+  Rescale(scales, std::hypot(profile.error, kErrAlike), reach, frames, segments);
   const auto [lowest, highest] = std::ranges::minmax(scales);
   const GroundScale scale{true, known, profile.tracks, profile.covered, profile.error, lowest, highest};
   spdlog::info(
