@@ -159,12 +159,14 @@ std::vector<Matrix6d> PoseUncertainty::Covariances(std::size_t origin, bool scal
   const auto centres = Centres(poses_);
   const auto away = [&](std::size_t i) -> Eigen::Vector3d { return centres[i] - centres[origin]; };
   Eigen::RowVectorXd too_large = Eigen::RowVectorXd::Zero(samples_.cols());  // the scale
-  double squares = 0.0;
-  for (std::size_t i = 0; i < poses_.size(); ++i) {
-    too_large -= (poses_[i].RotationMatrix() * away(i)).transpose() * Relative(i, origin).topRows<3>();
-    squares += away(i).squaredNorm();
+  if (scale_is_free) {
+    double squares = 0.0;
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+      too_large -= (poses_[i].RotationMatrix() * away(i)).transpose() * Relative(i, origin).topRows<3>();
+      squares += away(i).squaredNorm();
+    }
+    too_large /= squares > 0.0 ? squares : 1.0;
   }
-  too_large /= squares > 0.0 ? squares : 1.0;
   std::vector<Matrix6d> covariances;
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     Rows relative = Relative(i, origin);

@@ -25,11 +25,10 @@ FlowResidual ResidualOf(const Eigen::Vector2d& flow, const PixelGeometry& pixel,
   FlowResidual residual;
   residual.value = across.dot(translational);
   // Turning the line by an angle takes that angle times the flow along it off the residual.
-  Eigen::Matrix<double, 2, 3> by_direction;
-  by_direction << -Eigen::Matrix2d::Identity(), pixel.normalized;
   const double along = away.dot(translational) / length;
   residual.derivative.head<2>() =
-      -along / length * (across.transpose() * pixel.by_normalized * by_direction * tangents).transpose();
+      -along / length *
+      (across.transpose() * pixel.by_normalized * CameraMotion::AwayByDirection(pixel) * tangents).transpose();
   residual.derivative.tail<3>() = -(across.transpose() * pixel.by_rotation).transpose();
   return residual;
 }

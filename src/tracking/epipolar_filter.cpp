@@ -39,9 +39,9 @@ Deviation MakeDeviation(const CameraMotion& motion, const CameraMotion::Tangents
   deviation.normal = Eigen::Vector2d(-away.y(), away.x()).normalized();
   deviation.value = deviation.normal.dot(step.now - step.before);
   deviation.way_px = step_s * step.inverse_depth * away.norm();
+  const Eigen::Matrix<double, 2, 3> by_direction = pixel.by_normalized * CameraMotion::AwayByDirection(pixel);
   deviation.derivative << pixel.by_rotation.transpose() * deviation.normal,
-      step_s * step.inverse_depth * tangents.transpose() * CameraMotion::AwayByDirection(pixel).transpose() *
-          deviation.normal;
+      step_s * step.inverse_depth * tangents.transpose() * by_direction.transpose() * deviation.normal;
   return deviation;
 }
 

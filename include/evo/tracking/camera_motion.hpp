@@ -18,11 +18,11 @@ struct CameraMotion {
   Eigen::Vector2d Away(const PixelGeometry& pixel) const {
     return pixel.by_normalized * (direction.z() * pixel.normalized - direction.head<2>());
   }
-  /// The derivative of Away by the direction.
+  /// The derivative of Away by the direction, on the plane z = 1 instead of in px.
   static Eigen::Matrix<double, 2, 3> AwayByDirection(const PixelGeometry& pixel) {
     Eigen::Matrix<double, 2, 3> by_direction;
     by_direction << -Eigen::Matrix2d::Identity(), pixel.normalized;
-    return pixel.by_normalized * by_direction;
+    return by_direction;
   }
   /// What the camera's translation adds to a flow, px/s.
   Eigen::Vector2d WithoutTurn(const PixelGeometry& pixel, const Eigen::Vector2d& flow) const {
