@@ -141,7 +141,8 @@ void EventImage(benchmark::State& state) {
   const TrackerOptions options;
   FlowField field(Scene().width, Scene().height, options);
   ThreadPool pool(1);
-  field.Update(history, kStamp, {}, &pool);
+  field.Update(
+      history, kStamp, {}, [](const Eigen::Vector2d&) { return std::nullopt; }, &pool);
   for (auto _ : state) {
     const cv::Mat image = CorrectedEventImage(history, kStamp, field, options.corner_window_motion_px, options, &pool);
     benchmark::DoNotOptimize(image.data);
@@ -155,7 +156,8 @@ void DetectCornersInImage(benchmark::State& state) {
   const TrackerOptions options;
   FlowField field(Scene().width, Scene().height, options);
   ThreadPool pool(1);
-  field.Update(history, kStamp, {}, &pool);
+  field.Update(
+      history, kStamp, {}, [](const Eigen::Vector2d&) { return std::nullopt; }, &pool);
   const cv::Mat image = CorrectedEventImage(history, kStamp, field, options.corner_window_motion_px, options, &pool);
   for (auto _ : state) benchmark::DoNotOptimize(DetectCorners(image, {}, 50, 0.0, options, &pool));
 }

@@ -30,7 +30,14 @@ double SmallestInformation(const DensityMap& events) {
 void FeatureTracker::Refill(const EventHistory& history, TimeNs t) {
   std::vector<Eigen::Vector2d> taken;
   for (const auto& feature : features_) taken.push_back(feature.position);
-  flow_field_.Update(history, t, Flows(), pool_);
+  const std::vector<DepthSample> depths = Depths();
+  const auto guess = [&](const Eigen::Vector2d& position) -> std::optional<Eigen::Vector2d> {
+    if (!ego_motion_.known()) return std::nullopt;
+    const auto inverse_depth = UsualInverseDepth(depths, position);
+    if (!inverse_depth) return std::nullopt;
+    return ego_motion_.Flow(position, *inverse_depth);
+  };
+  flow_field_.Update(history, t, Flows(), guess, pool_);
   const cv::Mat image = CorrectedEventImage(history, t, flow_field_, options_.corner_window_motion_px, options_, pool_);
   const double fewest_events = options_.fewest_events * options_.corner_window_motion_px / options_.window_motion_px;
   const auto missing = static_cast<std::size_t>(options_.features) - features_.size();
@@ -40,7 +47,6 @@ void FeatureTracker::Refill(const EventHistory& history, TimeNs t) {
   };
   const auto corners = DetectCorners(image, taken, candidates, fewest_events, options_, pool_, stays);
   std::vector<std::optional<TrackedFeature>> born(corners.size());
-  const std::vector<DepthSample> depths = Depths();
   pool_->ForEach(corners.size(), [&](std::size_t i) { born[i] = Birth(history, t, corners[i], depths); });
   std::vector<TrackedFeature> fit;
   for (auto& feature : born) {

@@ -109,12 +109,17 @@ FlowField::Cell FlowField::Estimate(const EventHistory& history, TimeNs t, const
   return cell;
 }
 
+FlowField::Cell FlowField::Start(std::size_t index, const Guess& guess) const {
+  const auto guessed = guess(CentreOf(index));
+  return guessed ? Cell{*guessed, true} : cells_[index];
+}
+
 void FlowField::Update(const EventHistory& history, TimeNs t, const std::vector<FlowSample>& features,
-                       ThreadPool* pool) {
+                       const Guess& guess, ThreadPool* pool) {
   std::vector<Cell> next(cells_.size());
   pool->ForEach(cells_.size(), [&](std::size_t i) {
     const Cell known = FromFeatures(i, features);
-    next[i] = known.known ? known : Estimate(history, t, CentreOf(i), cells_[i]);
+    next[i] = known.known ? known : Estimate(history, t, CentreOf(i), Start(i, guess));
   });
   cells_ = std::move(next);
   FillUnknown();

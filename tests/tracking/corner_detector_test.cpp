@@ -11,6 +11,7 @@ namespace evo {
 namespace {
 
 const auto kAny = [](const Eigen::Vector2d&) { return true; };
+const auto kNoGuess = [](const Eigen::Vector2d&) { return std::nullopt; };
 
 using Eigen::Vector2d;
 
@@ -113,7 +114,7 @@ TEST(CorrectedEventImage, IsSharperThanTheRawOne) {
   ThreadPool pool(1);
   FlowField flow(scene.width, scene.height, options);
   const TimeNs t = 100'000'000;
-  flow.Update(history, t, {}, &pool);
+  flow.Update(history, t, {}, kNoGuess, &pool);
   const cv::Mat corrected = CorrectedEventImage(history, t, flow, 8.5, options, &pool);
   cv::Mat raw = cv::Mat::zeros(scene.height, scene.width, CV_32F);
   history.ForEachBetween(t - 20'000'000, t + 20'000'000,

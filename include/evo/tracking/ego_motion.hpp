@@ -36,6 +36,11 @@ class EgoMotion {
   const Eigen::Vector3d& direction() const { return motion_.direction; }
   const Eigen::Vector3d& turn_rate() const { return motion_.turn_rate; }  ///< of the world about the camera, rad/s
 
+  /// Of a resting point with this inverse depth, px/s.
+  Eigen::Vector2d Flow(const Eigen::Vector2d& position, double inverse_depth) const {
+    const PixelGeometry pixel = lens_.At(position);
+    return pixel.by_rotation * motion_.turn_rate + inverse_depth * motion_.Away(pixel);
+  }
   /// Of a point with this flow; 0 while the motion is not known.
   double InverseDepth(const FlowSample& feature) const;
   /// The same point's inverse depth `step_s` later.

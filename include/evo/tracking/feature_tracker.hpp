@@ -8,12 +8,12 @@
 #include "evo/core/parallel.hpp"
 #include "evo/events/event_history.hpp"
 #include "evo/tracking/density_map.hpp"
+#include "evo/tracking/depth_samples.hpp"
 #include "evo/tracking/ego_motion.hpp"
 #include "evo/tracking/em_affine.hpp"
 #include "evo/tracking/epipolar_filter.hpp"
 #include "evo/tracking/flow_field.hpp"
 #include "evo/tracking/jolt.hpp"
-#include "evo/tracking/surface_slope.hpp"
 #include "evo/tracking/tracker.hpp"
 
 namespace evo {

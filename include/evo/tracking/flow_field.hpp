@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "evo/core/parallel.hpp"
@@ -21,8 +23,13 @@ class FlowField {
  public:
   FlowField(int width, int height, const TrackerOptions& options);
 
-  /// Takes each cell's flow from the features around it, else estimates it, started from its own last value.
-  void Update(const EventHistory& history, TimeNs t, const std::vector<FlowSample>& features, ThreadPool* pool);
+  /// What may be known of the flow at a place that no feature is near to, px/s.
+  using Guess = std::function<std::optional<Eigen::Vector2d>(const Eigen::Vector2d& position)>;
+
+  /// Takes each cell's flow from the features around it, else estimates it, started from the guess or, without one,
+  /// from its own last value.
+  void Update(const EventHistory& history, TimeNs t, const std::vector<FlowSample>& features, const Guess& guess,
+              ThreadPool* pool);
 
   /// Bilinear, px/s; zero where nothing moves.
   Eigen::Vector2d At(double x, double y) const;
@@ -33,6 +40,7 @@ class FlowField {
     bool known = false;
   };
 
+  Cell Start(std::size_t index, const Guess& guess) const;
   Cell Estimate(const EventHistory& history, TimeNs t, const Eigen::Vector2d& centre, const Cell& start) const;
   Cell FromFeatures(std::size_t index, const std::vector<FlowSample>& features) const;
   Eigen::Vector2d CentreOf(std::size_t index) const;

@@ -26,7 +26,7 @@ struct TrackerOptions {
   int patch_radius_px = 8;         ///< half the side of a feature's patch: 17 x 17 px; larger ones span more depths
 
   // The window of events around an event frame's stamp, chosen per feature.
-  double window_motion_px = 4.0;  ///< the flow moves the feature this far within its window
+  double window_motion_px = 5.0;  ///< the flow moves the feature this far within its window
   double shortest_window_s = 0.004;
   double longest_window_s = 0.08;
   int fewest_events = 50;           ///< in a new feature's window
@@ -37,7 +37,7 @@ struct TrackerOptions {
   // Expectation maximisation.
   double flow_sigma_px = 1.5;    ///< soft association of events among themselves (EM 1), but for the last window
   double coarse_sigma_px = 2.5;  ///< soft association to the template (EM 2) where the fine one fails: a jolt
-  double fine_sigma_px = 1.0;    ///< the same, final pass; also of the last window of EM 1
+  double fine_sigma_px = 0.75;   ///< the same, final pass; also of the last window of EM 1
   double outlier_share = 0.2;    ///< density of stray events over the patch's mean density of events
   int iterations = 20;           ///< at most, each EM
   double flow_prior = 8.0;       ///< weight, in events, of the predicted flow
@@ -64,7 +64,7 @@ struct TrackerOptions {
   /// Of an event about the position of a new feature, as a share of the mean over all that were tried: its pattern must
   /// neither slide nor blur. About half of them are refused at 1.
   double smallest_information = 0.95;
-  double shortest_life_s = 0.08;  ///< a corner that leaves the image sooner than this is not taken
+  double shortest_life_s = 0.12;  ///< a corner that leaves the image sooner than this is not taken
   double fewest_cells = 8.0;      ///< px that a template's events fill: a hot pixel fills one
 
   KltOptions klt;

@@ -1,4 +1,4 @@
-#include "evo/tracking/surface_slope.hpp"
+#include "evo/tracking/depth_samples.hpp"
 
 #include <gtest/gtest.h>
 
@@ -47,6 +47,14 @@ TEST(SurfaceSlope, IsUnknownWhereTooFewAgree) {
   auto samples = PlaneSamples();
   for (auto& sample : samples) sample.position += Vector2d(300.0, 0.0);
   EXPECT_FALSE(SurfaceSlope(samples, kCentre));
+}
+
+TEST(UsualInverseDepth, IsTheMedianOfTheNearest) {
+  std::vector<DepthSample> samples = {{{0, 0}, 9.0}, {{1, 0}, 1.0}, {{2, 0}, 2.0}, {{0, 3}, 3.0}, {{0, 1}, 0.0}};
+  EXPECT_FALSE(UsualInverseDepth(samples, {0, 0})) << "four depths are known";
+  for (int x = 10; x < 20; ++x) samples.push_back({{x, 0}, 5.0});
+  EXPECT_EQ(UsualInverseDepth(samples, {0, 0}), 3.0) << "of 1, 2, 3, 5 and 9";
+  EXPECT_EQ(UsualInverseDepth(samples, {15, 0}), 5.0);
 }
 
 }  // namespace

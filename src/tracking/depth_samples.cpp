@@ -1,4 +1,4 @@
-#include "evo/tracking/surface_slope.hpp"
+#include "evo/tracking/depth_samples.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -13,6 +13,7 @@ constexpr double kUsualSlope = 0.06;   // 1/px, as a share of the inverse depth
 constexpr double kLeastSupport = 2.0;  // samples that agree, weighted
 constexpr double kWidest = 8.0;        // the first loss over the last
 constexpr int kIterations = 6;
+constexpr int kNearest = 5;  // samples asked for what is usual
 
 struct Neighbour {
   Eigen::Vector2d away;  // px
@@ -51,6 +52,18 @@ std::optional<Eigen::Vector2d> SurfaceSlope(const std::vector<DepthSample>& samp
   }
   if (support < kLeastSupport) return std::nullopt;
   return at.inverse_depth * slope;
+}
+
+std::optional<double> UsualInverseDepth(std::vector<DepthSample> samples, const Eigen::Vector2d& position) {
+  std::erase_if(samples, [](const DepthSample& sample) { return !(sample.inverse_depth > 0.0); });
+  if (samples.size() < static_cast<std::size_t>(kNearest)) return std::nullopt;
+  const auto distance = [&](const DepthSample& sample) { return (sample.position - position).squaredNorm(); };
+  const auto end = samples.begin() + kNearest;
+  std::ranges::nth_element(samples, end - 1, {}, distance);
+  const auto middle = samples.begin() + kNearest / 2;
+  std::nth_element(samples.begin(), middle, end,
+                   [](const auto& a, const auto& b) { return a.inverse_depth < b.inverse_depth; });
+  return middle->inverse_depth;
 }
 
 }  // namespace evo

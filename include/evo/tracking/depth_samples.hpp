@@ -17,4 +17,7 @@ struct DepthSample {
 /// position of `at` say nothing. Empty where too few agree.
 std::optional<Eigen::Vector2d> SurfaceSlope(const std::vector<DepthSample>& samples, const DepthSample& at);
 
+/// Median inverse depth of the few samples nearest to a place, 1/s. Empty where there are not that many.
+std::optional<double> UsualInverseDepth(std::vector<DepthSample> samples, const Eigen::Vector2d& position);
+
 }  // namespace evo

@@ -1,0 +1,50 @@
+#include "evo/tracking/flow_field.hpp"
+
+#include <gtest/gtest.h>
+
+#include "synthetic_events.hpp"
+
+namespace evo {
+namespace {
+
+using Eigen::Vector2d;
+
+/// Share of the places, 10 px apart, where the field is within 10 % of `truth`.
+double ShareRight(const FlowField& field, int width, int height, const Vector2d& truth) {
+  int right = 0, all = 0;
+  for (int y = 10; y < height; y += 10) {
+    for (int x = 10; x < width; x += 10, ++all) right += (field.At(x, y) - truth).norm() < 0.1 * truth.norm() ? 1 : 0;
+  }
+  return static_cast<double>(right) / all;
+}
+
+TEST(FlowField, StartsFromTheGuessWhereNoFeatureIs) {
+  const evo::testing::CrossScene scene(40, 2);
+  const Vector2d velocity(1200.0, 700.0);
+  const TrackerOptions options;
+  EventHistory history(scene.width, scene.height);
+  // So fast that a short window does not find it from rest.
+  history.Append(scene.Events([&](double t) { return Vector2d(velocity * (t - 0.05)); }, 0.1, 500.0));
+  ThreadPool pool(1);
+  const auto share = [&](const FlowField::Guess& guess) {
+    FlowField field(scene.width, scene.height, options);
+    field.Update(history, 50'000'000, {}, guess, &pool);
+    return ShareRight(field, scene.width, scene.height, velocity);
+  };
+  EXPECT_LT(share([](const Vector2d&) { return std::nullopt; }), 0.5);
+  EXPECT_GT(share([&](const Vector2d&) { return Vector2d(0.8 * velocity); }), 0.9);
+}
+
+TEST(FlowField, TakesTheFlowOfFeaturesNearby) {
+  const TrackerOptions options;
+  const EventHistory history(120, 90);
+  ThreadPool pool(1);
+  FlowField field(120, 90, options);
+  field.Update(
+      history, 0, {{{30.0, 40.0}, {10.0, 0.0}}, {{34.0, 40.0}, {20.0, 0.0}}},
+      [](const Vector2d&) { return std::nullopt; }, &pool);
+  EXPECT_NEAR(field.At(32.0, 40.0).x(), 15.0, 1.0);
+}
+
+}  // namespace
+}  // namespace evo
