@@ -25,6 +25,7 @@ ablations=(
   odometry.max_outliers=1000
   tracker.ego_motion=false
   tracker.epipolar_filter=false
+  tracker.window_bend_px=1000
   tracker.follow_jolts=false
   tracker.restore_shake=false
   tracker.smallest_information=0

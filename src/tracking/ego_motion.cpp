@@ -12,6 +12,7 @@ namespace {
 constexpr std::size_t kFewestFeatures = 12;
 constexpr int kIterations = 6;
 constexpr int kFilterIterations = 2;        // from what the flows alone say to the filtered motion
+constexpr double kTurnChangeGain = 0.2;     // of one frame in what is usual
 constexpr double kDirectionDrift = 0.014;   // of the motion, rad in a second; grows with the root of time
 constexpr double kTurnDrift = 0.2;          // the same, of the turn rate, rad/s
 constexpr double kAlike = 3.0;              // flows err alike: they tell so much less than if each erred by itself
@@ -116,6 +117,10 @@ void EgoMotion::Update(const std::vector<FlowSample>& features, double step_s) {
     expected = {before, kAlike * covariance.inverse()};
   }
   Refine(features, pixels, expected, kFilterIterations);
+  if (was_known && step_s > 0.0) {
+    const double change = (motion_.turn_rate - before.turn_rate).norm() / step_s;
+    turn_change_ += kTurnChangeGain * (change - turn_change_);
+  }
 }
 
 Eigen::Vector2d EgoMotion::AtRest(const FlowSample& feature) const {

@@ -14,6 +14,8 @@ void Register(Parameters& parameters, TrackerOptions& o) {
                  "half the side of the patch that tells a first flow (px)");
   parameters.Add("tracker.patch_radius_px", &o.patch_radius_px, 5, 40, "half the side of a feature's patch (px)");
   parameters.Add("tracker.window_motion_px", &o.window_motion_px, 0.5, 20.0, "motion within a feature's window (px)");
+  parameters.Add("tracker.window_bend_px", &o.window_bend_px, 0.001, 1000.0,
+                 "off a straight path within a window, by how the camera's turning usually changes (px)");
   parameters.Add("tracker.shortest_window_s", &o.shortest_window_s, 0.0005, 1.0, "of a feature's events (s)");
   parameters.Add("tracker.longest_window_s", &o.longest_window_s, 0.001, 2.0, "of a feature's events (s)");
   parameters.Add("tracker.fewest_events", &o.fewest_events, 10, 10000,

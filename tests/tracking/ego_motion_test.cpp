@@ -96,6 +96,22 @@ TEST(EgoMotion, FollowsAChangeOfDirection) {
   EXPECT_LT(AngleDeg(motion.direction(), mover.velocity), 2.0);
 }
 
+TEST(EgoMotion, KnowsHowMuchItsTurningUsuallyChanges) {
+  const auto change_after = [](double swing) {
+    Mover mover;
+    EgoMotion motion(mover.camera);
+    const Vector3d mean = mover.turn_rate;
+    for (int i = 0; i < 50; ++i) {
+      mover.turn_rate = mean + Vector3d(swing * std::sin(0.5 * i), 0.0, 0.0);
+      motion.Update(Flows(mover, 80, 0.0, 3), kFrame);
+    }
+    return motion.turn_change();
+  };
+  EXPECT_LT(change_after(0.0), 0.01);
+  const double mean_change = 0.2 * 0.5 * M_2_PI / kFrame;  // of a sine, from frame to frame
+  EXPECT_NEAR(change_after(0.2), mean_change, 0.4 * mean_change);
+}
+
 TEST(EgoMotion, HasNoDirectionWhereTheCameraStandsOrTurns) {
   Mover mover;
   mover.velocity.setZero();

@@ -36,6 +36,8 @@ class EgoMotion {
   const Eigen::Vector3d& direction() const { return motion_.direction; }
   const Eigen::Vector3d& turn_rate() const { return motion_.turn_rate; }  ///< of the world about the camera, rad/s
 
+  /// How much the turn rate usually changes, rad/s^2: the mean over the last frames.
+  double turn_change() const { return turn_change_; }
   /// Of a resting point with this inverse depth, px/s.
   Eigen::Vector2d Flow(const Eigen::Vector2d& position, double inverse_depth) const {
     const PixelGeometry pixel = lens_.At(position);
@@ -75,6 +77,7 @@ class EgoMotion {
   bool known_ = false;
   CameraMotion motion_;
   Matrix6d covariance_ = Matrix6d::Zero();
+  double turn_change_ = 0.0;
 };
 
 }  // namespace evo
