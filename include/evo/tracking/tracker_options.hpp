@@ -27,7 +27,7 @@ struct TrackerOptions {
 
   // The window of events around an event frame's stamp, chosen per feature.
   double window_motion_px = 5.0;  ///< the flow moves the feature this far within its window
-  double window_bend_px = 0.1;    ///< nor does the camera, as its turning usually changes, bend its path by more
+  double window_bend_px = 0.15;   ///< nor does the camera, as its turning usually changes, bend its path by more
   double shortest_window_s = 0.004;
   double longest_window_s = 0.08;
   int fewest_events = 50;           ///< in a new feature's window
