@@ -44,6 +44,8 @@ void Register(Parameters& parameters, BootstrapOptions& options) {
   parameters.Add("odometry.bootstrap.min_inlier_ratio", &options.min_inlier_ratio, 0, 1,
                  "share of the common tracks that must be inliers");
   parameters.Add("odometry.bootstrap.min_inliers", &options.min_inliers, 8, 1000, "inliers that a first map needs");
+  parameters.Add("odometry.bootstrap.min_shared_ratio", &options.min_shared_ratio, 0, 1,
+                 "share of the second frame's tracks that the first must have seen");
   parameters.Add("odometry.bootstrap.min_parallax_deg", &options.min_parallax_deg, 0.05, 30,
                  "median parallax of the first map's points in degrees");
   parameters.Add("odometry.bootstrap.median_depth", &options.median_depth, 1e-3, 1e4,
@@ -77,9 +79,12 @@ std::optional<Bootstrap> Bootstrapper::Add(int index) {
   std::optional<Bootstrap> bootstrap;
   while (!held_.empty() && !bootstrap) {
     const auto pairs = Match(frames_[held_.front()], frame);
-    if (static_cast<int>(pairs.size()) < options_.min_inliers) {
-      Refuse("only " + std::to_string(pairs.size()) + " tracks live long enough; " +
-             std::to_string(options_.min_inliers) + " are needed");
+    // The few tracks that are there when a car sets off know its first steps badly.
+    const int needed = std::max(
+        options_.min_inliers, static_cast<int>(options_.min_shared_ratio * static_cast<double>(frame.features.size())));
+    if (static_cast<int>(pairs.size()) < needed) {
+      Refuse("only " + std::to_string(pairs.size()) + " of " + std::to_string(frame.features.size()) +
+             " tracks live long enough; " + std::to_string(needed) + " are needed");
       give_up_oldest();
       continue;
     }

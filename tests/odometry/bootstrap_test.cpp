@@ -58,8 +58,9 @@ Recording Record(const Scene& scene, std::uint32_t seed) {
 }
 
 /// The first map, or why there is none.
-std::optional<Bootstrap> FirstMap(const Recording& recording, std::string* obstacle = nullptr) {
-  Bootstrapper bootstrapper({}, recording.frames, kFocal);
+std::optional<Bootstrap> FirstMap(const Recording& recording, std::string* obstacle = nullptr,
+                                  const BootstrapOptions& options = {}) {
+  Bootstrapper bootstrapper(options, recording.frames, kFocal);
   for (int i = 0; i < static_cast<int>(recording.frames.size()); ++i) {
     if (auto bootstrap = bootstrapper.Add(i)) return bootstrap;
   }
@@ -110,6 +111,19 @@ TEST(BootstrapGeometry, MotionIsRightAndOutliersAreLeftOut) {
     // Some happen to follow their epipolar lines.
     EXPECT_LT(kept_outliers, 0.3 * outliers) << static_cast<int>(way);
   }
+}
+
+TEST(BootstrapGeometry, BeginsWhereMostTracksAreSeen) {
+  Recording recording = Record({.step = {0.05, 0.0, 0.0}}, 1);
+  for (int i = 0; i < 5; ++i) {
+    std::erase_if(recording.frames[i].features, [](const Feature& feature) { return feature.track >= 25; });
+  }
+  const auto begin = [&](double ratio) {
+    const auto bootstrap = FirstMap(recording, nullptr, {.min_shared_ratio = ratio});
+    return bootstrap ? bootstrap->first : -1;
+  };
+  EXPECT_EQ(begin(0.0), 0);
+  EXPECT_GE(begin(0.5), 5);
 }
 
 TEST(BootstrapGeometry, ACameraThatStandsIsRefused) {

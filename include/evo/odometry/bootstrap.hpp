@@ -17,6 +17,7 @@ struct BootstrapOptions {
   double inlier_px = 1.5;          ///< Sampson error of an inlier
   double min_inlier_ratio = 0.6;   ///< of the pair's shared tracks
   int min_inliers = 15;
+  double min_shared_ratio = 0.5;  ///< of the tracks in the second frame: the first has seen them, too
   double min_parallax_deg = 1.0;  ///< median angle under which a point sees the two cameras
   double median_depth = 10.0;     ///< the map's scale: monocular odometry cannot know it
   bool refine = true;             ///< the first map over the frames between the pair, too
