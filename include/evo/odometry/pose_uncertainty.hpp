@@ -14,7 +14,7 @@ namespace evo {
 /// What the errors of tracks have in common. The residuals of an adjustment do not show it, since the poses have taken
 /// it up: it is a property of tracker and sensor, to be measured where the truth is known.
 struct CommonErrors {
-  double alike = 4.0;   ///< so many tracks err alike: they tell as much as one
+  double alike = 5.0;   ///< so many tracks err alike: they tell as much as one
   double turn = 0.001;  ///< standard deviation of what all tracks turn by about each axis, over their motion
 };
 void Register(Parameters& parameters, CommonErrors& options);
