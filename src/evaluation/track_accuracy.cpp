@@ -90,6 +90,7 @@ ThresholdAccuracy Summarize(const std::vector<TrackErrors>& tracks, double thres
   std::vector<double> ages;
   double judged = 0.0;
   double exceeding = 0.0;
+  double mostly_exceeding = 0.0;
   for (const auto& track : tracks) {
     if (!track.judged()) continue;
     const Within within = WithinThreshold(track, threshold_px);
@@ -97,6 +98,7 @@ ThresholdAccuracy Summarize(const std::vector<TrackErrors>& tracks, double thres
     errors.insert(errors.end(), good.begin(), good.end());
     judged += 1.0;
     exceeding += within.positions < track.errors_px.size() ? 1.0 : 0.0;
+    mostly_exceeding += ComputeStatistics(track.errors_px).median > threshold_px ? 1.0 : 0.0;
     if (!(within.age_s > 0.0)) continue;
     ages.push_back(within.age_s);
     const Statistics error = ComputeStatistics(good);
@@ -114,6 +116,7 @@ ThresholdAccuracy Summarize(const std::vector<TrackErrors>& tracks, double thres
   result.track_error_mean_px = Mean(track_means);
   result.track_error_median_px = ComputeStatistics(track_medians).median;
   result.exceeding_share = exceeding / judged;
+  result.mostly_exceeding_share = mostly_exceeding / judged;
   result.outlier_share = 1.0 - static_cast<double>(ages.size()) / judged;
   result.feature_age_s = ComputeStatistics(ages);
   result.expected_age_s = std::accumulate(ages.begin(), ages.end(), 0.0) / judged;

@@ -55,6 +55,7 @@ void AppendThreshold(const ThresholdAccuracy& accuracy, std::vector<TableRow>* r
   add("track_error_mean", "px", accuracy.track_error_mean_px);
   add("track_error_median", "px", accuracy.track_error_median_px);
   add("exceeding_share", "share", accuracy.exceeding_share);
+  add("mostly_exceeding_share", "share", accuracy.mostly_exceeding_share);
   add("outlier_share", "share", accuracy.outlier_share);
   add("feature_age_mean", "s", age.mean);
   add("feature_age_median", "s", age.median);

@@ -108,6 +108,7 @@ TEST(TrackAccuracy, ExpectedAgeIsTheAgeOfStableTracksTimesTheirShare) {
   const auto at_5px = made.Evaluate({5.0}).thresholds[0];
   EXPECT_DOUBLE_EQ(at_5px.outlier_share, 0.5);
   EXPECT_DOUBLE_EQ(at_5px.exceeding_share, 0.75);
+  EXPECT_DOUBLE_EQ(at_5px.mostly_exceeding_share, 0.5) << "the last one is off in half of its positions only";
   EXPECT_NEAR(at_5px.feature_age_s.mean, 0.6, 1e-12);
   EXPECT_NEAR(at_5px.feature_age_s.median, 0.6, 1e-12);
   EXPECT_NEAR(at_5px.expected_age_s, 0.3, 1e-12);

@@ -46,11 +46,12 @@ struct ThresholdAccuracy {
   double error_p75_px = 0.0;
   double error_p95_px = 0.0;
   double error_p99_px = 0.0;
-  double track_error_mean_px = 0.0;    ///< mean over stable tracks of each one's mean error: "tracking error" of [2]
-  double track_error_median_px = 0.0;  ///< median over stable tracks of each one's median error
-  double exceeding_share = 0.0;        ///< tracks whose error exceeds the threshold at any time
-  double outlier_share = 0.0;          ///< tracks that are not stable: they exceed it at once
-  Statistics feature_age_s;            ///< over stable tracks
+  double track_error_mean_px = 0.0;     ///< mean over stable tracks of each one's mean error: "tracking error" of [2]
+  double track_error_median_px = 0.0;   ///< median over stable tracks of each one's median error
+  double exceeding_share = 0.0;         ///< tracks whose error exceeds the threshold at any time
+  double mostly_exceeding_share = 0.0;  ///< tracks whose median error does, over the whole life
+  double outlier_share = 0.0;           ///< tracks that are not stable: they exceed it at once
+  Statistics feature_age_s;             ///< over stable tracks
   /// Mean feature age of stable tracks times their share, "expected feature age" of [2]: the same as the mean over all
   /// tracks, outliers with 0, which is the "feature age" of [1].
   double expected_age_s = 0.0;
