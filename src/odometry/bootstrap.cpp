@@ -83,8 +83,8 @@ std::optional<Bootstrap> Bootstrapper::Add(int index) {
     const int needed = std::max(
         options_.min_inliers, static_cast<int>(options_.min_shared_ratio * static_cast<double>(frame.features.size())));
     if (static_cast<int>(pairs.size()) < needed) {
-      Refuse("only " + std::to_string(pairs.size()) + " of " + std::to_string(frame.features.size()) +
-             " tracks live long enough; " + std::to_string(needed) + " are needed");
+      Refuse("only " + std::to_string(pairs.size()) + " tracks of " + std::to_string(frame.features.size()) +
+             " live long enough; " + std::to_string(needed) + " are needed");
       give_up_oldest();
       continue;
     }

@@ -138,7 +138,7 @@ TEST(TrackEvents, FeaturesOutliveAStop) {
 }
 
 /// Of the tracks that live from before to after a bump, px.
-std::vector<Vector2d> ErrorsOverABump(bool follow_jolts) {
+std::vector<Vector2d> ErrorsOverABump(bool follow_jolts, double window_bend_px) {
   // Along at 40 px/s, and besides 22 px up within 60 ms and back within 160 ms.
   const auto moved = [](double t) {
     const double s = t - 0.3;
@@ -147,16 +147,29 @@ std::vector<Vector2d> ErrorsOverABump(bool follow_jolts) {
   };
   TrackerOptions options;
   options.follow_jolts = follow_jolts;
+  options.window_bend_px = window_bend_px;
   const TrackingResult tracked = TrackAll(CrossScene(120, 4).Events(moved, 0.7, 1000.0), 2, options);
   return Errors(ById(tracked.tracks), moved, 0.25, 0.6);
 }
 
+bool IsAstray(const Vector2d& error) { return error.norm() > 1.0; }
+
+constexpr double kAnyBend = 1000.0;
+
 TEST(TrackEvents, FeaturesFollowAJolt) {
-  const auto is_astray = [](const Vector2d& error) { return error.norm() > 1.0; };
-  const std::vector<Vector2d> errors = ErrorsOverABump(true);
+  const std::vector<Vector2d> errors = ErrorsOverABump(true, kAnyBend);
   EXPECT_GE(errors.size(), 8u);
-  EXPECT_EQ(std::ranges::count_if(errors, is_astray), 0);
-  EXPECT_GE(std::ranges::count_if(ErrorsOverABump(false), is_astray), 2);  // they take a neighbour for themselves
+  EXPECT_EQ(std::ranges::count_if(errors, IsAstray), 0);
+  // They take a neighbour for themselves.
+  EXPECT_GE(std::ranges::count_if(ErrorsOverABump(false, kAnyBend), IsAstray), 2);
+}
+
+TEST(TrackEvents, ShortWindowsKeepFeaturesInAJolt) {
+  for (const bool follow_jolts : {true, false}) {
+    const std::vector<Vector2d> errors = ErrorsOverABump(follow_jolts, TrackerOptions().window_bend_px);
+    EXPECT_GE(errors.size(), 6u);
+    EXPECT_EQ(std::ranges::count_if(errors, IsAstray), 0);
+  }
 }
 
 TEST_F(TrackEventsTest, MostTracksOutliveTheTurn) {
