@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <optional>
 #include <set>
 
 #include "app/error_place.hpp"
@@ -151,10 +152,17 @@ void RemoveOdometryResults(const std::filesystem::path& folder) {
 OdometryResult RunOdometryStage(StageContext* context, const Tracks& tracks, const std::filesystem::path& source,
                                 const Camera& camera) {
   OdometryResult result = context->record.Time("odometry", [&] {
-    Progress progress("odometry", context->show_progress);
+    std::optional<Progress> progress;
+    std::optional<OdometryStage> shown;
     return NamingPlace(source.string(), [&] {
-      return RunOdometry(tracks, camera, context->config.odometry, context->pool.size(),
-                         [&](double done) { progress.Update(done); });
+      return RunOdometry(
+          tracks, camera, context->config.odometry, context->pool.size(), [&](OdometryStage stage, double done) {
+            if (shown != stage) {
+              progress.emplace(stage == OdometryStage::kFrames ? "odometry" : "refining", context->show_progress);
+            }
+            shown = stage;
+            progress->Update(done);
+          });
     });
   });
   for (const TimeNs t : result.lost) spdlog::debug("no pose at {} s", FormatTime(t));

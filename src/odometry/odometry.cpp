@@ -11,8 +11,6 @@ namespace evo {
 
 namespace {
 
-constexpr double kTrackingShare = 0.5;  // of the progress bar, before the final refinement
-
 /// The run cut into its segments, with the poses as the tracking left them.
 std::vector<Segment> CutSegments(const FrameHandler& handler) {
   std::vector<Segment> segments(handler.bootstraps().size());
@@ -87,7 +85,7 @@ void Register(Parameters& parameters, OdometryOptions& options) {
 }
 
 OdometryResult RunOdometry(const Tracks& tracks, const Camera& camera, const OdometryOptions& options, int threads,
-                           const std::function<void(double)>& progress) {
+                           const OdometryProgress& progress) {
   OdometryResult result;
   result.resampled = !AreSynchronous(tracks);
   if (result.resampled) {
@@ -100,7 +98,7 @@ OdometryResult RunOdometry(const Tracks& tracks, const Camera& camera, const Odo
   result.frames = static_cast<int>(frames.size());
 
   FrameHandler handler(options.frame_handler, frames, camera.focal_px(), threads);
-  handler.Run([&](double share) { progress(kTrackingShare * share); });
+  handler.Run([&](double done) { progress(OdometryStage::kFrames, done); });
   if (handler.bootstraps().empty()) {
     throw Error(ErrorKind::kTrackingLost, "no pair of the " + std::to_string(frames.size()) +
                                               " frames could start a map; at the end: " + handler.obstacle());
@@ -110,8 +108,8 @@ OdometryResult RunOdometry(const Tracks& tracks, const Camera& camera, const Odo
   if (options.final_refinement.enabled) {
     ThreadPool pool(threads);
     RefineSegments(
-        options.final_refinement, frames,
-        [&](double share) { progress(kTrackingShare + (1.0 - kTrackingShare) * share); }, &pool, &segments);
+        options.final_refinement, frames, [&](double done) { progress(OdometryStage::kRefinement, done); }, &pool,
+        &segments);
   }
   const bool grounded = options.ground.hold_height || options.ground.camera_height_m > 0.0;
   if (grounded) result.ground = ScaleByGround(options.ground, frames, &segments);

@@ -331,7 +331,9 @@ TEST(GroundScale, NothingToGoBy) {
 TEST(GroundScale, MakesADriveMetric) {
   const auto drive = testing::MakeDrive({.features = 200, .seed = 3});
   OdometryOptions options;
-  const auto run = [&] { return RunOdometry(drive.tracks, testing::DriveCamera(), options, 2, [](double) {}); };
+  const auto run = [&] {
+    return RunOdometry(drive.tracks, testing::DriveCamera(), options, 2, [](OdometryStage, double) {});
+  };
   options.ground.hold_height = false;
   EXPECT_FALSE(run().ground.has_value());
   options.ground.camera_height_m = kHeight;

@@ -22,7 +22,7 @@ using testing::DriveCamera;
 using testing::DriveOptions;
 using testing::MakeDrive;
 
-constexpr auto kNoProgress = [](double) {};
+constexpr auto kNoProgress = [](OdometryStage, double) {};
 
 struct Accuracy {
   double planar_percent = 0.0;    ///< mean planar error over the path: first pose aligned, one scale

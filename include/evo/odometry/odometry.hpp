@@ -41,11 +41,17 @@ struct OdometryResult {
   std::vector<TimeNs> lost;           ///< frames between the first and the last pose that have none
 };
 
+/// The parts of the work: frame by frame, then the refinement over the whole run.
+enum class OdometryStage { kFrames, kRefinement };
+
+/// Called with the share of a part that is done, in [0, 1].
+using OdometryProgress = std::function<void(OdometryStage stage, double done)>;
+
 /// Monocular visual odometry from feature tracks: the paper's pose and depth threads, then one refinement over the
 /// whole run. The scale is arbitrary unless the camera's height above the road is given. The result does not depend on
 /// `threads` (2 or more: the depths get their own thread). Throws Error: kInput if tracks and camera do not belong
 /// together, kTrackingLost if no map could ever be started.
 OdometryResult RunOdometry(const Tracks& tracks, const Camera& camera, const OdometryOptions& options, int threads,
-                           const std::function<void(double)>& progress);
+                           const OdometryProgress& progress);
 
 }  // namespace evo
