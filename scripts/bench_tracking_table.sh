@@ -43,7 +43,7 @@ row() {
   )
   if [ "$truth" = triangulated ]; then
     residual=$error
-    accuracy=("" "" "" "" "" "" "")
+    accuracy=("${accuracy[@]/*/}")
   fi
   local cells=(
     "$1" "$2" "$3" "$4" "$threads" "$repeats" "$(speed_cells "$5")" "$truth" "$judged"

@@ -97,8 +97,10 @@ ThresholdAccuracy Summarize(const std::vector<TrackErrors>& tracks, double thres
     const std::span<const double> good(track.errors_px.data(), within.positions);
     errors.insert(errors.end(), good.begin(), good.end());
     judged += 1.0;
-    exceeding += within.positions < track.errors_px.size() ? 1.0 : 0.0;
-    mostly_exceeding += ComputeStatistics(track.errors_px).median > threshold_px ? 1.0 : 0.0;
+    if (within.positions < track.errors_px.size()) {
+      exceeding += 1.0;
+      mostly_exceeding += ComputeStatistics(track.errors_px).median > threshold_px ? 1.0 : 0.0;
+    }
     if (!(within.age_s > 0.0)) continue;
     ages.push_back(within.age_s);
     const Statistics error = ComputeStatistics(good);

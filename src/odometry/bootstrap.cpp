@@ -5,11 +5,11 @@
 #include <cstdio>
 #include <numbers>
 
+#include "evo/core/median.hpp"
 #include "evo/geometry/triangulation.hpp"
 #include "evo/geometry/two_view.hpp"
 #include "evo/odometry/bundle_adjuster.hpp"
 #include "evo/odometry/pose_optimizer.hpp"
-#include "odometry/median.hpp"
 
 namespace evo {
 

@@ -7,11 +7,11 @@
 #include <map>
 #include <unordered_map>
 
+#include "evo/core/median.hpp"
 #include "evo/odometry/bundle_adjuster.hpp"
 #include "evo/odometry/pose_optimizer.hpp"
 #include "evo/odometry/pose_uncertainty.hpp"
 #include "evo/odometry/track_weights.hpp"
-#include "odometry/median.hpp"
 #include "odometry/run_bundle.hpp"
 
 namespace evo {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "odometry/median.hpp"
+#include "evo/core/median.hpp"
 
 namespace evo {
 

@@ -8,9 +8,9 @@
 #include <unordered_map>
 #include <utility>
 
+#include "evo/core/median.hpp"
 #include "odometry/driven_path.hpp"
 #include "odometry/ground_profile.hpp"
-#include "odometry/median.hpp"
 #include "odometry/track_points.hpp"
 
 namespace evo {

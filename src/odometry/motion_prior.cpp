@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "odometry/median.hpp"
+#include "evo/core/median.hpp"
 
 namespace evo {
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "odometry/median.hpp"
+#include "evo/core/median.hpp"
 
 namespace evo {
 

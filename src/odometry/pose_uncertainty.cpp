@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
+#include "evo/core/median.hpp"
 #include "odometry/bundle_equations.hpp"
-#include "odometry/median.hpp"
 
 namespace evo {
 

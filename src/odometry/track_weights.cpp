@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "odometry/median.hpp"
+#include "evo/core/median.hpp"
 
 namespace evo {
 

@@ -164,7 +164,7 @@ PatchFlow EgoMotion::At(const FlowSample& feature, const Eigen::Vector2d& slope)
     const PixelGeometry there = lens_.At(feature.position + step), back = lens_.At(feature.position - step);
     if (!there.known() || !back.known()) return {};
     const auto plane_flow = [&](const PixelGeometry& at, const Eigen::Vector2d& from_centre) -> Eigen::Vector2d {
-      return at.by_rotation * motion_.turn_rate + (inverse_depth + slope.dot(from_centre)) * motion_.Away(at);
+      return motion_.Flow(at, inverse_depth + slope.dot(from_centre));
     };
     patch.rate.col(axis) = (plane_flow(there, step) - plane_flow(back, -step)) / (2.0 * kStep);
   }

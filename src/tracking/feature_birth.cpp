@@ -76,7 +76,7 @@ std::optional<TrackedFeature> FeatureTracker::Birth(const EventHistory& history,
   if (!EstimateFlow(history, t, position.x(), position.y(), options_, &flow)) return std::nullopt;
   if (!ego_motion_.Allows({position, flow})) return std::nullopt;
   thread_local LocalEvents events;
-  const TimeNs half_window = HalfWindowOf({position, flow});
+  const TimeNs half_window = HalfWindowOf(flow);
   history.Gather(
       {t, position.x(), position.y(), flow.x(), flow.y(), static_cast<double>(options_.patch_radius_px), half_window},
       &events);

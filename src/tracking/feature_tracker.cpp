@@ -123,8 +123,8 @@ std::vector<UnexpectedMotion> FeatureTracker::UnexpectedMotions() const {
   return motions;
 }
 
-TimeNs FeatureTracker::HalfWindowOf(const FlowSample& feature) const {
-  const TimeNs by_motion = HalfWindow(feature.flow, options_.window_motion_px, options_);
+TimeNs FeatureTracker::HalfWindowOf(const Eigen::Vector2d& flow) const {
+  const TimeNs by_motion = HalfWindow(flow, options_.window_motion_px, options_);
   const double acceleration_px_s2 = ego_motion_.lens().focal_px() * ego_motion_.turn_change();
   const double straight_s = std::sqrt(2.0 * options_.window_bend_px / std::max(acceleration_px_s2, 1.0));
   return std::min(by_motion, FromSeconds(std::max(straight_s, 0.5 * options_.shortest_window_s)));
@@ -157,7 +157,7 @@ void FeatureTracker::Align(const EventHistory& history, TimeNs t, const Jolt& jo
                    &a.events);
     return a.events.size();
   };
-  a.half_window = HalfWindowOf({a.position, a.start.flow});
+  a.half_window = HalfWindowOf(a.start.flow);
   if (gather() < static_cast<std::size_t>(options_.fewest_events)) {
     a.half_window = std::min(2 * a.half_window, FromSeconds(0.5 * options_.longest_window_s));
     const int fewest = feature.frames < kNewbornFrames ? options_.fewest_events : options_.fewest_events_alive;

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "evo/core/median.hpp"
 #include "odometry/bundle_drive.hpp"
 
 namespace evo {
@@ -123,8 +124,7 @@ TEST(PoseUncertainty, WhatTurnsTheWholeImageTurnsThePath) {
   }
   std::vector<double> turned(40);
   for (std::size_t i = 2; i < 40; ++i) {
-    std::ranges::nth_element(motion[i], motion[i].begin() + static_cast<std::ptrdiff_t>(motion[i].size() / 2));
-    turned[i] = turned[i - 1] + kShare * motion[i][motion[i].size() / 2];
+    turned[i] = turned[i - 1] + kShare * Median(motion[i]);
   }
   for (auto& observation : problem.observations) {
     const double since_birth = turned[observation.frame] - turned[problem.points[observation.point].anchor];

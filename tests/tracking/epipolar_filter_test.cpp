@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
 #include <vector>
 
+#include "evo/core/median.hpp"
 #include "evo/geometry/known_cameras.hpp"
 #include "evo/geometry/se3.hpp"
 
@@ -19,11 +19,6 @@ using Eigen::Vector3d;
 
 constexpr double kStepS = 0.02;
 constexpr double kNoisePx = 0.15;
-
-double Median(std::vector<double> values) {
-  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
-  return values[values.size() / 2];
-}
 
 /// Errors after 30 frames, px, of positions with noise: as they came, and filtered.
 struct Errors {

@@ -88,8 +88,8 @@ struct Evaluation {
   std::int64_t gaps = 0;   ///< their number, those at the start and the end of the interval included
   std::vector<AlignedEvaluation> alignments;
   std::optional<Consistency> consistency;  ///< of the estimate with its covariances, where those are given
-  std::vector<std::string>
-      left_out;  ///< why, of each alignment that the poses do not determine, and of covariances that fit no pose
+  /// Why, of each alignment that the poses do not determine, and of covariances that fit no pose.
+  std::vector<std::string> left_out;
 };
 
 /// Judges `estimate` by `truth`, and its covariances, if there are any, by its errors: with its scale fitted if the

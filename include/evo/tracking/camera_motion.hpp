@@ -18,6 +18,10 @@ struct CameraMotion {
   Eigen::Vector2d Away(const PixelGeometry& pixel) const {
     return pixel.by_normalized * (direction.z() * pixel.normalized - direction.head<2>());
   }
+  /// Image motion, px/s, of a resting point of this inverse depth.
+  Eigen::Vector2d Flow(const PixelGeometry& pixel, double inverse_depth) const {
+    return pixel.by_rotation * turn_rate + inverse_depth * Away(pixel);
+  }
   /// The derivative of Away by the direction, on the plane z = 1 instead of in px.
   static Eigen::Matrix<double, 2, 3> AwayByDirection(const PixelGeometry& pixel) {
     Eigen::Matrix<double, 2, 3> by_direction;

@@ -40,8 +40,7 @@ class EgoMotion {
   double turn_change() const { return turn_change_; }
   /// Of a resting point with this inverse depth, px/s.
   Eigen::Vector2d Flow(const Eigen::Vector2d& position, double inverse_depth) const {
-    const PixelGeometry pixel = lens_.At(position);
-    return pixel.by_rotation * motion_.turn_rate + inverse_depth * motion_.Away(pixel);
+    return motion_.Flow(lens_.At(position), inverse_depth);
   }
   /// Of a point with this flow; 0 while the motion is not known.
   double InverseDepth(const FlowSample& feature) const;

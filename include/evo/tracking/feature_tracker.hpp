@@ -71,7 +71,7 @@ class FeatureTracker : public Tracker {
  private:
   std::vector<FlowSample> Flows() const;
   /// Half of the window for a feature with this flow.
-  TimeNs HalfWindowOf(const FlowSample& feature) const;
+  TimeNs HalfWindowOf(const Eigen::Vector2d& flow) const;
   void Track(const EventHistory& history, TimeNs t);
   /// How a feature probably lies in the sensor `step_s` after the last frame, relative to the `position` returned.
   PatchMotion Predict(const TrackedFeature& feature, double step_s, Eigen::Vector2d* position) const;
