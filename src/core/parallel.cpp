@@ -2,16 +2,30 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <exception>
 
 namespace evo {
+
+namespace {
+
+constexpr std::chrono::microseconds kWatch{50};  // before a thread sleeps: to wake one takes about as long
+
+/// Watches `done` for a moment.
+template <typename Condition>
+void WatchFor(Condition done) {
+  const auto end = std::chrono::steady_clock::now() + kWatch;
+  while (!done() && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+}
+
+}  // namespace
 
 struct ThreadPool::Job {
   const std::function<void(std::size_t)>& work;
   std::size_t count;
   std::size_t chunk;
   std::atomic<std::size_t> next{0};
-  std::size_t busy = 0;  // workers inside this job; guarded by the pool's mutex
+  std::atomic<std::size_t> busy{0};  // workers inside this job; changed under the pool's mutex
   std::mutex error_mutex;
   std::exception_ptr error;
   std::size_t error_index = 0;
@@ -54,6 +68,9 @@ void ThreadPool::RunWorker() {
   std::size_t seen = 0;
   std::unique_lock lock(mutex_);
   while (true) {
+    lock.unlock();
+    WatchFor([&] { return generation_ != seen; });
+    lock.lock();
     wake_.wait(lock, [&] { return stop_ || (job_ && generation_ != seen); });
     if (stop_) return;
     seen = generation_;
@@ -67,7 +84,7 @@ void ThreadPool::RunWorker() {
 }
 
 void ThreadPool::ForEach(std::size_t count, const std::function<void(std::size_t)>& work, std::size_t chunk) {
-  Job job{work, count, std::max<std::size_t>(1, chunk), {}, 0, {}, nullptr, 0};
+  Job job{work, count, std::max<std::size_t>(1, chunk), {}, {}, {}, nullptr, 0};
   if (workers_.empty() || count <= job.chunk) {
     Drain(job);
   } else {
@@ -78,6 +95,7 @@ void ThreadPool::ForEach(std::size_t count, const std::function<void(std::size_t
     }
     wake_.notify_all();
     Drain(job);
+    WatchFor([&] { return job.busy == 0; });
     std::unique_lock lock(mutex_);
     finished_.wait(lock, [&] { return job.busy == 0; });
     job_ = nullptr;

@@ -2,7 +2,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 
 namespace evo {
 
@@ -54,12 +53,12 @@ std::optional<TimeNs> ParseTime(std::string_view text) {
 }
 
 std::string FormatTime(TimeNs t) {
-  char buffer[32];
+  constexpr std::size_t kDecimals = 9;
   const auto magnitude = t < 0 ? 0 - static_cast<std::uint64_t>(t) : static_cast<std::uint64_t>(t);
-  const int n = std::snprintf(buffer, sizeof buffer, "%s%llu.%09llu", t < 0 ? "-" : "",
-                              static_cast<unsigned long long>(magnitude / kNsPerSecond),
-                              static_cast<unsigned long long>(magnitude % kNsPerSecond));
-  return std::string(buffer, static_cast<std::size_t>(n));
+  std::string text = std::to_string(magnitude);
+  if (text.size() <= kDecimals) text.insert(0, kDecimals + 1 - text.size(), '0');
+  text.insert(text.size() - kDecimals, 1, '.');
+  return t < 0 ? "-" + text : text;
 }
 
 }  // namespace evo

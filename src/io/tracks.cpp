@@ -1,8 +1,10 @@
 #include "evo/io/tracks.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -68,6 +70,14 @@ Tracks Unique(const TextLines& lines, const std::vector<Row>& rows, bool keep_la
   return tracks;
 }
 
+/// Some times as fast as printf.
+void AppendPixel(double px, std::string* line) {
+  std::array<char, 32> text;  // fits any position that is written
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), px, std::chars_format::fixed, 4).ptr;
+  *line += ' ';
+  line->append(text.data(), end);
+}
+
 }  // namespace
 
 Tracks ReadTracks(const std::filesystem::path& path) {
@@ -99,14 +109,18 @@ void WriteTracks(const std::filesystem::path& path, const Tracks& tracks, const 
   OutputFile file(path);
   file.stream() << "# id timestamp x y\n";
   for (const auto& comment : comments) file.stream() << "# " << comment << '\n';
-  char pixel[128];
+  std::string line;
   for (const auto& observation : tracks) {
     if (!(std::abs(observation.x) < 1e9 && std::abs(observation.y) < 1e9)) {
       throw Error(ErrorKind::kInput, path.string() + ": the position of track " + std::to_string(observation.id) +
                                          " at " + FormatTime(observation.t) + " s is not finite");
     }
-    std::snprintf(pixel, sizeof pixel, " %.4f %.4f\n", observation.x, observation.y);
-    file.stream() << observation.id << ' ' << FormatTime(observation.t) << pixel;
+    line = std::to_string(observation.id);
+    line += ' ';
+    line += FormatTime(observation.t);
+    AppendPixel(observation.x, &line);
+    AppendPixel(observation.y, &line);
+    file.stream() << line << '\n';
   }
   file.Commit();
 }

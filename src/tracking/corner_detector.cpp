@@ -17,7 +17,7 @@ constexpr double kStrongCorner = 0.95;  // quantile
 constexpr int kBucketPx = 48;
 constexpr float kSmallestResponse = std::numeric_limits<float>::min();
 
-constexpr std::size_t kStripes = 2;  // of a corrected image: more would cost more than they save
+constexpr std::size_t kStripes = 2;  // of an image: more would cost more than they save
 
 /// The flow within a tile: bilinear between its corners.
 struct TileFlow {
@@ -100,16 +100,31 @@ void MarkMaxima(const float* above, const float* row, const float* below, int be
   }
 }
 
-std::vector<Corner> LocalMaxima(const Harris& harris, int width, int height, double border_px) {
-  std::vector<Corner> corners;
-  std::vector<int> marks(static_cast<std::size_t>(width));
-  const int border = static_cast<int>(std::ceil(border_px)) + 2;
-  for (int y = border; y < height - border; ++y) {
-    MarkMaxima(harris.row(y - 1), harris.row(y), harris.row(y + 1), border, width - border, marks.data());
-    for (int x = border; x < width - border; ++x) {
-      if (marks[static_cast<std::size_t>(x)]) corners.push_back({harris.row(y)[x], x, y});
+/// All local maxima, strongest first, but for those weaker than `corner_share` of a strong one.
+std::vector<Corner> StrongMaxima(const Harris& harris, int width, int height, const TrackerOptions& options,
+                                 ThreadPool* pool) {
+  const int border = static_cast<int>(std::ceil(options.border_px)) + 2;
+  const int rows = std::max(0, height - 2 * border);
+  std::array<std::vector<Corner>, kStripes> stripes;
+  pool->ForEach(kStripes, [&](std::size_t i) {
+    std::vector<int> marks(static_cast<std::size_t>(width));
+    const int begin = border + static_cast<int>(i) * rows / static_cast<int>(kStripes);
+    const int end = border + static_cast<int>(i + 1) * rows / static_cast<int>(kStripes);
+    for (int y = begin; y < end; ++y) {
+      MarkMaxima(harris.row(y - 1), harris.row(y), harris.row(y + 1), border, width - border, marks.data());
+      for (int x = border; x < width - border; ++x) {
+        if (marks[static_cast<std::size_t>(x)]) stripes[i].push_back({harris.row(y)[x], x, y});
+      }
     }
-  }
+  });
+  std::vector<Corner> corners;
+  for (const auto& stripe : stripes) corners.insert(corners.end(), stripe.begin(), stripe.end());
+  if (corners.empty()) return corners;
+  const auto strong =
+      corners.begin() + static_cast<std::ptrdiff_t>((1.0 - kStrongCorner) * static_cast<double>(corners.size()));
+  std::ranges::nth_element(corners, strong, std::ranges::greater(), &Corner::strength);
+  const auto weakest = static_cast<float>(options.corner_share * strong->strength);
+  std::erase_if(corners, [&](const Corner& corner) { return corner.strength < weakest; });
   // A total order, so that equal responses do not depend on the sort.
   std::ranges::sort(corners, [](const Corner& a, const Corner& b) {
     return std::tuple(-a.strength, a.y, a.x) < std::tuple(-b.strength, b.y, b.x);
@@ -204,11 +219,7 @@ std::vector<Eigen::Vector2d> DetectCorners(const cv::Mat& image, const std::vect
                                            const std::function<bool(const Eigen::Vector2d&)>& is_wanted) {
   thread_local Harris harris;
   harris.Respond(image, pool);
-  std::vector<Corner> corners = LocalMaxima(harris, image.cols, image.rows, options.border_px);
-  if (corners.empty()) return {};
-  const auto strong = static_cast<std::size_t>((1.0 - kStrongCorner) * static_cast<double>(corners.size()));
-  const auto weakest = static_cast<float>(options.corner_share * corners[strong].strength);
-  std::erase_if(corners, [&](const Corner& corner) { return corner.strength < weakest; });
+  const std::vector<Corner> corners = StrongMaxima(harris, image.cols, image.rows, options, pool);
   // Asked only of corners that are tried: most never are.
   const auto fits = [&](const Corner& corner) {
     return is_wanted({corner.x, corner.y}) &&

@@ -13,7 +13,7 @@ namespace evo {
 
 namespace {
 
-constexpr std::size_t kFramesBetweenDrops = 4;
+constexpr double kBetweenDropsS = 0.08;  // looking at every tile costs more than some frames' events more do
 
 void DropLoneObservations(Tracks* tracks) {
   std::unordered_map<std::int64_t, int> count;
@@ -35,10 +35,13 @@ TrackingResult TrackEvents(EventReader* reader, const Camera& camera, const Trac
   std::vector<ObservedWindow> windows;  // of the observations
   const TimeNs interval = FromSeconds(options.frame_interval_s);
   const TimeNs half_window = FromSeconds(0.5 * options.longest_window_s);
+  std::optional<TimeNs> dropped;  // frame at which old events were forgotten
 
   const auto process = [&](TimeNs t) {
-    // Looking at every tile costs more than some frames' events more do.
-    if (result.frames.size() % kFramesBetweenDrops == 0) history.DropBefore(t - tracker->before());
+    if (!dropped || t - *dropped >= FromSeconds(kBetweenDropsS)) {
+      history.DropBefore(t - tracker->before());
+      dropped = t;
+    }
     tracker->Process(history, t);
     result.frames.push_back(t);
     if (tracker->detected()) ++result.key_frames;

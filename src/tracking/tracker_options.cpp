@@ -17,7 +17,7 @@ void Register(Parameters& parameters, TrackerOptions& o) {
   parameters.Add("tracker.window_bend_px", &o.window_bend_px, 0.001, 1000.0,
                  "off a straight path within a window, by how the camera's turning usually changes (px)");
   parameters.Add("tracker.shortest_window_s", &o.shortest_window_s, 0.0005, 1.0, "of a feature's events (s)");
-  parameters.Add("tracker.longest_window_s", &o.longest_window_s, 0.001, 2.0, "of a feature's events (s)");
+  parameters.Add("tracker.longest_window_s", &o.longest_window_s, 0.001, 1.0, "of a feature's events (s)");
   parameters.Add("tracker.fewest_events", &o.fewest_events, 10, 10000,
                  "in the window of a new feature, or of a patch that tells the flow");
   parameters.Add("tracker.fewest_events_alive", &o.fewest_events_alive, 5, 10000,
@@ -61,7 +61,7 @@ void Register(Parameters& parameters, TrackerOptions& o) {
                  "a corner that leaves the image sooner is not taken (s)");
   parameters.Add("tracker.fewest_cells", &o.fewest_cells, 0.0, 1000.0, "that a template's events fill (px)");
   parameters.Add("tracker.klt.events", &o.klt.events, 100, 1000000, "newest events in an image, at most");
-  parameters.Add("tracker.klt.longest_window_s", &o.klt.longest_window_s, 0.001, 2.0, "and none older than this (s)");
+  parameters.Add("tracker.klt.longest_window_s", &o.klt.longest_window_s, 0.001, 1.0, "and none older than this (s)");
   parameters.Add("tracker.klt.patch_radius_px", &o.klt.patch_radius_px, 2, 40, "half the side of a patch (px)");
   parameters.Add("tracker.klt.forward_backward_px", &o.klt.forward_backward_px, 0.01, 20.0,
                  "lost if tracking back ends farther off (px)");

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <random>
+#include <stdexcept>
 #include <tuple>
 #include <vector>
 
@@ -127,6 +129,38 @@ TEST(EventHistory, ForgetsWhatIsDropped) {
   const auto kept = std::ranges::count_if(events.t, [](TimeNs t) { return t >= 10'000'000; });
   EXPECT_GT(kept, 0);
   EXPECT_EQ(count(0, 20'000'000), kept);
+}
+
+TEST(EventHistory, HoldsStampsOfAnySize) {
+  // Stamps wrap around in 32 bits every 4.3 s; blocks lie around such an instant, one of them after a long gap.
+  constexpr TimeNs kWrap = TimeNs{1} << 32;
+  EventHistory history(kWidth, kHeight);
+  for (const TimeNs middle : {kWrap / 2, kWrap, 7 * kWrap, 1000000 * kWrap}) {
+    history.DropBefore(middle - 10'000'000);
+    const EventColumns events = RandomEvents(2000, middle - 10'000'000, middle + 10'000'000);
+    history.Append(events);
+    std::vector<TimeNs> found;
+    history.ForEachBetween(middle - 5'000'000, middle + 5'000'000,
+                           [&](int, int, TimeNs t, std::int8_t) { found.push_back(t); });
+    std::ranges::sort(found);
+    std::vector<TimeNs> expected;
+    std::ranges::copy_if(events.t, std::back_inserter(expected),
+                         [&](TimeNs t) { return t >= middle - 5'000'000 && t < middle + 5'000'000; });
+    EXPECT_GT(expected.size(), 500u);
+    EXPECT_EQ(found, expected);
+  }
+}
+
+TEST(EventHistory, RefusesTooLongAStretch) {
+  EventHistory history(kWidth, kHeight);
+  history.Append(RandomEvents(10, 0, 1'000'000));
+  const EventColumns late = RandomEvents(10, EventHistory::kLongest + 1'000'000, EventHistory::kLongest + 2'000'000);
+  EXPECT_THROW(history.Append(late), std::length_error);
+  history.DropBefore(2'000'000);
+  history.Append(late);
+  LocalEvents local;
+  history.Gather({late.t.front(), 25, 18, 0, 0, 50, 2'000'000}, &local);
+  EXPECT_EQ(local.size(), late.size());
 }
 
 TEST(LocalEvents, ThinsEvenly) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstddef>
 #include <functional>
@@ -35,7 +36,7 @@ class ThreadPool {
   std::condition_variable wake_;
   std::condition_variable finished_;
   Job* job_ = nullptr;
-  std::size_t generation_ = 0;
+  std::atomic<std::size_t> generation_{0};
   bool stop_ = false;
 };
 

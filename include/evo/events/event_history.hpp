@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -38,7 +39,11 @@ class EventHistory {
  public:
   EventHistory(int width, int height);
 
-  /// Events [begin, end) of `events`, which follow the ones appended before in time.
+  /// The longest stretch of time that is held at once, ns.
+  static constexpr TimeNs kLongest = std::numeric_limits<std::int32_t>::max();
+
+  /// Events [begin, end) of `events`, which follow the ones appended before in time. Throws std::length_error where the
+  /// last of them is more than `kLongest` after the first one that is held.
   void Append(const EventColumns& events, std::size_t begin, std::size_t end);
   void Append(const EventColumns& events) { Append(events, 0, events.size()); }
   /// Forgets the events before `t`.
@@ -59,7 +64,11 @@ class EventHistory {
   /// The same for one tile, by time. Tiles are counted row by row.
   template <typename Visitor>
   void ForEachInTile(std::size_t tile, TimeNs begin, TimeNs end, Visitor visit) const {
-    for (const Entry& entry : tiles_[tile].Between(begin, end)) visit(entry.x, entry.y, entry.t, entry.polarity);
+    const int left = static_cast<int>(tile % columns_) * kTilePx;
+    const int top = static_cast<int>(tile / columns_) * kTilePx;
+    for (const Entry& entry : Between(tile, begin, end)) {
+      visit(left + entry.x, top + entry.y, oldest_ + entry.After(oldest_), entry.polarity);
+    }
   }
 
   static constexpr int kTilePx = 8;  ///< side of a tile
@@ -70,24 +79,35 @@ class EventHistory {
   int height() const { return height_; }
 
  private:
+  /// As small as can be: the memory that the events fill is what finding them costs.
   struct Entry {
-    TimeNs t;
-    std::uint16_t x;
-    std::uint16_t y;
+    std::uint32_t t;    // the stamp's lower half
+    std::uint8_t x, y;  // within the tile
     std::int8_t polarity;
+
+    /// ns, negative before it; of an instant no farther off than `kLongest`.
+    std::int32_t After(TimeNs instant) const {
+      return static_cast<std::int32_t>(t - static_cast<std::uint32_t>(instant));
+    }
   };
   struct Tile {
     std::vector<Entry> entries;  // in order of time
     std::size_t dropped = 0;     // entries at the front that are forgotten
 
-    std::span<const Entry> Between(TimeNs begin, TimeNs end) const;
+    /// The first that is not before `t`, of those from `from` on.
+    std::vector<Entry>::const_iterator NotBefore(TimeNs t, std::vector<Entry>::const_iterator from) const;
   };
+
+  std::span<const Entry> Between(std::size_t tile, TimeNs begin, TimeNs end) const;
 
   int width_;
   int height_;
   std::size_t columns_;  // of tiles
   std::size_t rows_;
   std::vector<Tile> tiles_;  // row-major
+  bool empty_ = true;        // nothing has been appended
+  TimeNs oldest_ = 0;        // events before this are forgotten
+  TimeNs newest_ = 0;
 };
 
 }  // namespace evo
