@@ -28,7 +28,7 @@ ablations=(
   tracker.window_bend_px=1000
   tracker.follow_jolts=false
   tracker.restore_shake=false
-  tracker.smallest_information=0
+  tracker.uninformative_share=0
   tracker.template_gain=1
   tracker.use_polarity=false
 )

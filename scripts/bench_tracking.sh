@@ -54,9 +54,10 @@ beside, which tells where little of a long recording is used.
 
 Tracks. Where there are depth maps, tracks are judged by them. "Error": the median over the tracks of each one's median
 error, over its whole life and up to its first error over 5 px. "Age": how long a track stays within 5 px, in % of the
-time that its point is visible (a perfect tracker has 100), and in s. "Over 3 px": tracks that ever are, those whose
-median error is, and positions from the first such one of a track on, which is at least the share of positions over
-3 px. Elsewhere, "resid." is the median residual of tracks triangulated with the true poses, a lower bound of the
+time that its point is visible (a perfect tracker has 100), and in s. "Over 3 px": tracks that ever are; those whose
+median error is; of these the ones astray, which follow none of the surfaces within 3 px of where they began either (at
+the outline of a thing the point below a feature may be on the other side); and positions from the first such one of a
+track on, which is at least the share of positions over 3 px. Tracks on or beside what moves by itself are not judged. Elsewhere, "resid." is the median residual of tracks triangulated with the true poses, a lower bound of the
 error. Lifetimes are means.
 
 Pictures. With --draw-every S, OUT/SCENE_SEED_SECONDS/METHOD_FEATURES/drawn/images holds four_frames_SECONDS.png every

@@ -23,7 +23,8 @@ speed_cells() {
 
 header=scene,seed,method,features,threads,repeats,$speed_header,truth,tracks_judged
 header+=,track_error_median_px,track_error_to_5_px_median_px,expected_age_at_5_px_share,expected_age_at_5_px_s
-header+=,tracks_over_3_px_share,tracks_mostly_over_3_px_share,positions_past_3_px_share,triangulation_residual_median_px
+header+=,tracks_over_3_px_share,tracks_mostly_over_3_px_share,tracks_astray_over_3_px_share,positions_past_3_px_share
+header+=,tracks_that_move_share,triangulation_residual_median_px
 header+=,lifetime_frames,lifetime_s,frame_interval_s,failure
 
 # row SCENE SEED METHOD FEATURES RESULTS
@@ -38,8 +39,11 @@ row() {
     "$(quantity "$quality" expected_feature_age s 5.000000000)"
     "$(quantity "$quality" exceeding_share share 3.000000000)"
     "$(quantity "$quality" mostly_exceeding_share share 3.000000000)"
+    "$(quantity "$quality" stray_share share 3.000000000)"
     "$(awk -v part="$(quantity "$quality" compared_positions count 3.000000000)" \
       -v all="$(quantity "$quality" compared_positions count)" 'BEGIN { if (all > 0) printf "%.9f", 1 - part / all }')"
+    "$(awk -v part="$(quantity "$quality" tracks_moves count)" -v all="$(quantity "$quality" tracks count)" \
+      'BEGIN { if (all > 0) printf "%.9f", part / all }')"
   )
   if [ "$truth" = triangulated ]; then
     residual=$error
@@ -97,10 +101,10 @@ print_table() {
     NR == 1 {
       for (i = 1; i <= NF; ++i) at[$i] = i
       printf "%-22s%5s method", "scene", $2
-      print "  live features    x real time     CPU    error, px    age to 5 px     over 3 px, %        tracks  resid." \
+      print "  live features    x real time     CPU    error, px    age to 5 px         over 3 px, % of tracks  tracks  resid." \
             "         lifetime"
       printf "%34s", ""
-      print "  asked    mean  median   best   s/s  life to 5 px       %     s    ever  mostly   pos.  judged      px" \
+      print "  asked    mean  median   best   s/s  life to 5 px       %     s    ever  mostly  astray   pos.  judged      px" \
             "  frames     s   a frame"
       next
     }
@@ -112,6 +116,7 @@ print_table() {
       cell(6, "%.2f", "track_error_median_px"); cell(8, "%.2f", "track_error_to_5_px_median_px")
       cell(8, "%.1f", "expected_age_at_5_px_share", 100); cell(6, "%.2f", "expected_age_at_5_px_s")
       cell(8, "%.1f", "tracks_over_3_px_share", 100); cell(8, "%.1f", "tracks_mostly_over_3_px_share", 100)
+      cell(8, "%.1f", "tracks_astray_over_3_px_share", 100)
       cell(7, "%.1f", "positions_past_3_px_share", 100)
       cell(8, "%d", "tracks_judged"); cell(8, "%.2f", "triangulation_residual_median_px")
       cell(8, "%.1f", "lifetime_frames"); cell(6, "%.2f", "lifetime_s"); cell(8, "%.3f s", "frame_interval_s")
@@ -137,6 +142,8 @@ targets='
   driving_night  0    tracks_over_3_px_share      100  <   4
   driving_day    0    tracks_mostly_over_3_px_share  100  <   2
   driving_night  0    tracks_mostly_over_3_px_share  100  <   4
+  driving_day    0    tracks_astray_over_3_px_share  100  <   2
+  driving_night  0    tracks_astray_over_3_px_share  100  <   4
   driving_day    0    positions_past_3_px_share   100  <   2
   driving_night  0    positions_past_3_px_share   100  <   4'
 

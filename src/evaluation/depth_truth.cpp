@@ -35,9 +35,10 @@ Neighbours FindNeighbours(const DepthMap& map, const Eigen::Vector2d& pixel) {
 
 bool IsKnown(double depth) { return std::isfinite(depth) && depth > 0.0; }
 
-/// The point of one track as it goes through the maps.
+/// One point of a track as it goes through the maps.
 struct Point {
   std::size_t track = 0;
+  std::optional<std::size_t> beside;  ///< index in TrueTrack::beside; empty: the track's own point
   Eigen::Vector3d position_world;
   TimeNs seen = 0;  ///< the last instant at which it was found visible
 };
@@ -51,8 +52,12 @@ struct DepthView {
 
 class DepthOracle {
  public:
-  DepthOracle(const Trajectory& trajectory, const Camera& camera, TimeNs max_gap, double edge)
-      : trajectory_(trajectory), camera_(camera), max_gap_(max_gap), edge_(edge) {}
+  DepthOracle(const Trajectory& trajectory, const Camera& camera, TimeNs max_gap, const TrackTruthOptions& options)
+      : trajectory_(trajectory),
+        camera_(camera),
+        max_gap_(max_gap),
+        edge_(options.depth_edge),
+        reach_px_(options.surface_reach_px) {}
 
   std::optional<SE3> CamFromWorld(TimeNs t) const {
     const auto T_world_cam = PoseAt(trajectory_, t, max_gap_);
@@ -81,6 +86,29 @@ class DepthOracle {
       if (std::abs(change) <= kDepthTolerance * z) return T_world_cam * (z * x->homogeneous());
     }
     return std::nullopt;
+  }
+
+  /// Whether something moves around the place of a point.
+  bool MovesBeside(const Eigen::Vector3d& position_world, const DepthView& view) const {
+    bool moves = false;
+    ForEachBeside(position_world, view, [&](int x, int y, double) { moves = moves || view.map.IsMoving(x, y); });
+    return moves;
+  }
+
+  /// The points on the ray of `observation` at the depths of the other surfaces around the place of a point of it.
+  std::vector<Eigen::Vector3d> LocateBeside(const TrackObservation& observation, const SE3& T_cam_world,
+                                            const Eigen::Vector3d& position_world, const DepthView& view) const {
+    const auto x = camera_.Undistort({observation.x, observation.y});
+    if (!x) return {};
+    const SE3 T_world_cam = T_cam_world.Inverse();
+    const SE3 T_map_cam = view.T_cam_world * T_world_cam;
+    const Eigen::Vector3d ray = T_map_cam.rotation() * x->homogeneous();
+    std::vector<Eigen::Vector3d> points;
+    for (const double depth : OtherDepths(position_world, view)) {
+      const double z = (depth - T_map_cam.translation().z()) / ray.z();
+      if (z > 0.0) points.push_back(T_world_cam * (z * x->homogeneous()));
+    }
+    return points;
   }
 
   /// Where the camera sees a point, given in its coordinates; empty if it does not.
@@ -121,6 +149,45 @@ class DepthOracle {
   }
 
  private:
+  /// Calls visit(x, y, squared distance) for the pixels around the place of a point.
+  template <typename Visitor>
+  void ForEachBeside(const Eigen::Vector3d& position_world, const DepthView& view, const Visitor& visit) const {
+    const auto seen = Seen(view.T_cam_world * position_world);
+    if (!seen) return;
+    const double reach = std::max(reach_px_, 1.0);
+    const auto from = [&](double centre) { return std::max(0, static_cast<int>(std::ceil(centre - reach))); };
+    const auto to = [&](double centre, int size) {
+      return std::min(size - 1, static_cast<int>(std::floor(centre + reach)));
+    };
+    for (int y = from(seen->y()); y <= to(seen->y(), view.map.height); ++y) {
+      for (int x = from(seen->x()); x <= to(seen->x(), view.map.width); ++x) {
+        const double distance2 = (Eigen::Vector2d(x, y) - *seen).squaredNorm();
+        if (distance2 <= reach * reach) visit(x, y, distance2);
+      }
+    }
+  }
+
+  /// One for each surface beside the point's own: where it is nearest to the point's place.
+  std::vector<double> OtherDepths(const Eigen::Vector3d& position_world, const DepthView& view) const {
+    if (!(reach_px_ > 0.0)) return {};
+    struct Pixel {
+      double depth, distance2;
+    };
+    std::vector<Pixel> pixels;
+    ForEachBeside(position_world, view, [&](int x, int y, double distance2) {
+      if (IsKnown(view.map.At(x, y))) pixels.push_back({view.map.At(x, y), distance2});
+    });
+    std::ranges::sort(pixels, {}, &Pixel::depth);
+    const double own = (view.T_cam_world * position_world).z();
+    std::vector<double> depths;
+    for (auto begin = pixels.begin(), end = begin; begin != pixels.end(); begin = end) {
+      for (++end; end != pixels.end() && end->depth <= (1.0 + edge_) * (end - 1)->depth;) ++end;
+      if (own >= begin->depth / (1.0 + edge_) && own <= (1.0 + edge_) * (end - 1)->depth) continue;
+      depths.push_back(std::ranges::min_element(begin, end, {}, &Pixel::distance2)->depth);
+    }
+    return depths;
+  }
+
   /// Interpolated in inverse depth, which is linear on a plane. Empty where unknown or across an edge.
   std::optional<double> SurfaceDepth(const DepthMap& map, const Eigen::Vector2d& pixel) const {
     const Neighbours near = FindNeighbours(map, pixel);
@@ -135,6 +202,7 @@ class DepthOracle {
   const Camera& camera_;
   TimeNs max_gap_;
   double edge_;
+  double reach_px_;
 };
 
 /// Indices of the tracks that begin nearest to each map.
@@ -165,14 +233,23 @@ class PointFollower {
       if (!T_cam_world) continue;
       const auto position = oracle_.Locate(first, *T_cam_world, view);
       if (!position) continue;
-      results_[track].verdict = TrackVerdict::kJudged;
-      points_.push_back({track, *position, first.t});
+      TrueTrack& result = results_[track];
+      if (oracle_.MovesBeside(*position, view)) {
+        result.verdict = TrackVerdict::kMoves;
+        continue;
+      }
+      result.verdict = TrackVerdict::kJudged;
+      points_.push_back({track, std::nullopt, *position, first.t});
+      for (const auto& other : oracle_.LocateBeside(first, *T_cam_world, *position, view)) {
+        points_.push_back({track, result.beside.size(), other, first.t});
+        result.beside.emplace_back(tracks_[track].observations.size());
+      }
     }
   }
 
   void CheckOcclusion(const DepthView& view) {
     std::erase_if(points_, [&](const Point& point) {
-      const bool occluded = point.seen < view.t && oracle_.IsOccluded(point.position_world, view);
+      const bool occluded = !point.beside && point.seen < view.t && oracle_.IsOccluded(point.position_world, view);
       if (occluded) End(point, point.seen);
       return occluded;
     });
@@ -196,10 +273,11 @@ class PointFollower {
  private:
   void End(const Point& point, TimeNs until) {
     TrueTrack& result = results_[point.track];
-    result.visible_until = until;
+    if (!point.beside) result.visible_until = until;
+    auto& positions = point.beside ? result.beside[*point.beside] : result.positions;
     const auto& observations = tracks_[point.track].observations;
     for (std::size_t i = 0; i < observations.size() && observations[i].t <= until; ++i) {
-      result.positions[i] = oracle_.SeenAt(point.position_world, observations[i].t);
+      positions[i] = oracle_.SeenAt(point.position_world, observations[i].t);
     }
   }
 
@@ -226,7 +304,7 @@ std::vector<TrueTrack> TruthFromDepth(const std::vector<FeatureTrack>& tracks, c
                                       const TrackTruthOptions& options) {
   CheckSize(maps, camera);
   CheckSensorFit(tracks, camera);
-  const DepthOracle oracle(trajectory, camera, max_gap, options.depth_edge);
+  const DepthOracle oracle(trajectory, camera, max_gap, options);
   std::vector<TrueTrack> results(tracks.size());
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     const auto& observations = tracks[i].observations;

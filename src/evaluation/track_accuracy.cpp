@@ -43,6 +43,27 @@ double Quantile(const std::vector<double>& sorted, double share) {
 
 double Mean(const std::vector<double>& values) { return ComputeStatistics(values).mean; }
 
+double MedianOf(const std::vector<double>& values) { return ComputeStatistics(values).median; }
+
+double DistancePx(const TrackObservation& observation, const Eigen::Vector2d& position) {
+  return std::hypot(observation.x - position.x(), observation.y - position.y());
+}
+
+/// Median error from the surface that a track follows best. A surface that is out of sight for longer than the track's
+/// own point explains as much less.
+double SurfaceError(const FeatureTrack& track, const TrueTrack& truth, const std::vector<double>& errors_px) {
+  double least = MedianOf(errors_px);
+  for (const auto& positions : truth.beside) {
+    std::vector<double> errors;
+    for (std::size_t i = 1; i < positions.size(); ++i) {
+      if (positions[i]) errors.push_back(DistancePx(track.observations[i], *positions[i]));
+    }
+    if (errors.size() < errors_px.size()) errors.resize(errors_px.size(), std::numeric_limits<double>::infinity());
+    least = std::min(least, MedianOf(errors));
+  }
+  return least;
+}
+
 void Compare(const FeatureTrack& track, const TrueTrack& truth, TrackErrors* result) {
   const auto first = std::ranges::find_if(truth.positions, [](const auto& p) { return p.has_value(); });
   if (first == truth.positions.end()) return;
@@ -54,10 +75,11 @@ void Compare(const FeatureTrack& track, const TrueTrack& truth, TrackErrors* res
     if (!position || (++positions == 1 && truth.starts_at_observation)) continue;
     const auto& observation = track.observations[i];
     result->ages_s.push_back(ToSeconds(observation.t - start));
-    result->errors_px.push_back(std::hypot(observation.x - position->x(), observation.y - position->y()));
+    result->errors_px.push_back(DistancePx(observation, *position));
   }
   if (truth.visible_until) result->true_lifetime_s = ToSeconds(*truth.visible_until - start);
   if (positions < kFewestPositions) result->verdict = TrackVerdict::kTooShort;
+  result->surface_error_px = SurfaceError(track, truth, result->errors_px);
 }
 
 TrackErrors CompareTrack(const FeatureTrack& track, const TrueTrack& truth, const std::vector<double>& thresholds) {
@@ -91,6 +113,7 @@ ThresholdAccuracy Summarize(const std::vector<TrackErrors>& tracks, double thres
   double judged = 0.0;
   double exceeding = 0.0;
   double mostly_exceeding = 0.0;
+  double stray = 0.0;
   for (const auto& track : tracks) {
     if (!track.judged()) continue;
     const Within within = WithinThreshold(track, threshold_px);
@@ -99,7 +122,8 @@ ThresholdAccuracy Summarize(const std::vector<TrackErrors>& tracks, double thres
     judged += 1.0;
     if (within.positions < track.errors_px.size()) {
       exceeding += 1.0;
-      mostly_exceeding += ComputeStatistics(track.errors_px).median > threshold_px ? 1.0 : 0.0;
+      mostly_exceeding += MedianOf(track.errors_px) > threshold_px ? 1.0 : 0.0;
+      stray += track.surface_error_px > threshold_px ? 1.0 : 0.0;
     }
     if (!(within.age_s > 0.0)) continue;
     ages.push_back(within.age_s);
@@ -119,6 +143,7 @@ ThresholdAccuracy Summarize(const std::vector<TrackErrors>& tracks, double thres
   result.track_error_median_px = ComputeStatistics(track_medians).median;
   result.exceeding_share = exceeding / judged;
   result.mostly_exceeding_share = mostly_exceeding / judged;
+  result.stray_share = stray / judged;
   result.outlier_share = 1.0 - static_cast<double>(ages.size()) / judged;
   result.feature_age_s = ComputeStatistics(ages);
   result.expected_age_s = std::accumulate(ages.begin(), ages.end(), 0.0) / judged;
@@ -179,6 +204,7 @@ void RequireJudged(const TrackAccuracy& accuracy) {
   for (const auto& [verdict, reason] :
        {std::pair{TrackVerdict::kNoTruth, " without truth at their stamps or of their ids"},
         {TrackVerdict::kNoDepth, " without a depth where they begin"},
+        {TrackVerdict::kMoves, " on what moves"},
         {TrackVerdict::kNotTriangulated, " that meet in no point"},
         {TrackVerdict::kTooShort, " too short"}}) {
     const std::int64_t count = Count(accuracy, verdict);

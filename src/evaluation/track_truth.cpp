@@ -57,6 +57,8 @@ TrueTrack Triangulate(const FeatureTrack& track, const Trajectory& trajectory, c
 void Register(Parameters& parameters, TrackTruthOptions& options) {
   parameters.Add("evaluation.depth_edge", &options.depth_edge, 0.001, 1,
                  "depth maps: neighbouring depths that differ by a larger share belong to different surfaces");
+  parameters.Add("evaluation.surface_reach_px", &options.surface_reach_px, 0.0, 20.0,
+                 "depth maps: a feature may be on any surface this near to the place where it begins (px)");
 }
 
 std::vector<FeatureTrack> GroupById(const Tracks& tracks) {

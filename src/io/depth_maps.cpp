@@ -1,6 +1,8 @@
 #include "evo/io/depth_maps.hpp"
 
 #include <cmath>
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "evo/core/error.hpp"
@@ -14,6 +16,7 @@ namespace {
 
 constexpr char kMaps[] = "davis/left/depth_image_raw";
 constexpr char kStamps[] = "davis/left/depth_image_raw_ts";
+constexpr char kMoving[] = "davis/left/moving_image_raw";
 constexpr char kRectified[] = "davis/left/depth_image_rect";
 constexpr double kLargestSeconds = 9e9;
 constexpr hsize_t kLargestSide = 65536;
@@ -56,10 +59,14 @@ struct DepthMapReader::State {
       throw maps.Failure(" has images of an impossible size");
     }
     stamps = ReadStamps(file.Open(kStamps), shape[0]);
+    if (!file.Has(kMoving)) return;
+    moving = file.Open(kMoving);
+    if (moving->shape() != shape) throw moving->Failure(std::string(" has not the shape of ") + kMaps);
   }
 
   hdf5::File file;
   hdf5::Dataset maps;
+  std::optional<hdf5::Dataset> moving;
   std::vector<TimeNs> stamps;
 };
 
@@ -79,13 +86,24 @@ int DepthMapReader::width() const { return static_cast<int>(state_->maps.shape()
 int DepthMapReader::height() const { return static_cast<int>(state_->maps.shape()[1]); }
 
 DepthMap DepthMapReader::Read(std::size_t index) const {
-  DepthMap map{width(), height(), {}};
-  map.depth.resize(static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height));
+  const std::size_t pixels = static_cast<std::size_t>(width()) * static_cast<std::size_t>(height());
+  DepthMap map{width(), height(), std::vector<double>(pixels)};
   state_->maps.Read(index, 1, map.depth.data());
   for (const double depth : map.depth) {
     if (depth < 0.0) {
       throw state_->maps.Failure(" row " + std::to_string(index) + ": the depth " + FormatNumber(depth) +
                                  " m is negative; unknown depths are NaN or 0");
+    }
+  }
+  if (state_->moving) {
+    std::vector<double> moves(pixels);
+    state_->moving->Read(index, 1, moves.data());
+    for (const double moving : moves) {
+      if (moving != 0.0 && moving != 1.0) {
+        throw state_->moving->Failure(" row " + std::to_string(index) + ": " + FormatNumber(moving) +
+                                      " is neither 0 (at rest) nor 1 (moves)");
+      }
+      map.moving.push_back(moving == 1.0 ? 1 : 0);
     }
   }
   return map;

@@ -211,6 +211,7 @@ struct MvsecGroundTruthWriter::State {
 
   Hdf5Output output;
   ImageStack depth{"davis/left/depth_image_raw", H5T_NATIVE_FLOAT};
+  ImageStack moving{"davis/left/moving_image_raw", H5T_NATIVE_UINT8};
   ImageStack rectified_depth{"davis/left/depth_image_rect", H5T_NATIVE_FLOAT};
   ImageStack flow{"davis/left/flow_dist", H5T_NATIVE_FLOAT};
 };
@@ -226,6 +227,7 @@ MvsecGroundTruthWriter::~MvsecGroundTruthWriter() = default;
 
 void MvsecGroundTruthWriter::AppendDepth(TimeNs t, const DepthMap& map) {
   state_->depth.Append(&state_->output, t, {map.height, map.width}, map.depth);
+  if (!map.moving.empty()) state_->moving.Append(&state_->output, t, {map.height, map.width}, map.moving);
 }
 
 void MvsecGroundTruthWriter::AppendRectifiedDepth(TimeNs t, const DepthMap& map) {
@@ -237,7 +239,9 @@ void MvsecGroundTruthWriter::AppendFlow(TimeNs t, const FlowMap& map) {
 }
 
 void MvsecGroundTruthWriter::Commit() {
-  for (ImageStack* maps : {&state_->depth, &state_->rectified_depth, &state_->flow}) maps->Finish(&state_->output);
+  for (ImageStack* maps : {&state_->depth, &state_->moving, &state_->rectified_depth, &state_->flow}) {
+    maps->Finish(&state_->output);
+  }
   state_->output.Commit();
 }
 

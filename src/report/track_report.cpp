@@ -24,6 +24,8 @@ const char* VerdictName(TrackVerdict verdict) {
       return "no_truth";
     case TrackVerdict::kNoDepth:
       return "no_depth";
+    case TrackVerdict::kMoves:
+      return "moves";
     case TrackVerdict::kNotTriangulated:
       return "not_triangulated";
   }
@@ -56,6 +58,7 @@ void AppendThreshold(const ThresholdAccuracy& accuracy, std::vector<TableRow>* r
   add("track_error_median", "px", accuracy.track_error_median_px);
   add("exceeding_share", "share", accuracy.exceeding_share);
   add("mostly_exceeding_share", "share", accuracy.mostly_exceeding_share);
+  add("stray_share", "share", accuracy.stray_share);
   add("outlier_share", "share", accuracy.outlier_share);
   add("feature_age_mean", "s", age.mean);
   add("feature_age_median", "s", age.median);
@@ -87,7 +90,8 @@ TableRow ErrorRow(const TrackErrors& track, const std::vector<double>& threshold
                {"mean_error_px", error.mean},
                {"median_error_px", error.median},
                {"rmse_error_px", error.rmse},
-               {"max_error_px", error.max}};
+               {"max_error_px", error.max},
+               {"surface_error_px", track.judged() ? track.surface_error_px : kNone}};
   for (std::size_t i = 0; i < thresholds_px.size(); ++i) {
     const double age = track.judged() ? track.feature_ages_s[i] : kNone;
     const std::string threshold = Format("%gpx", thresholds_px[i]);
@@ -108,7 +112,7 @@ void WriteTrackQuality(const std::filesystem::path& path, const TrackAccuracy& a
   add("truth", "name", accuracy.truth);
   add("tracks", "count", static_cast<std::int64_t>(accuracy.tracks.size()));
   for (const auto verdict : {TrackVerdict::kJudged, TrackVerdict::kTooShort, TrackVerdict::kNoTruth,
-                             TrackVerdict::kNoDepth, TrackVerdict::kNotTriangulated}) {
+                             TrackVerdict::kNoDepth, TrackVerdict::kMoves, TrackVerdict::kNotTriangulated}) {
     add(std::string("tracks_") + VerdictName(verdict), "count", Count(accuracy, verdict));
   }
   add("expected_feature_age_normalized_1_to_31_px", "share", accuracy.expected_age_normalized);
@@ -130,6 +134,7 @@ std::string FormatTrackAccuracy(const TrackAccuracy& accuracy) {
   for (const auto& [verdict, name] : {std::pair{TrackVerdict::kTooShort, "too short"},
                                       {TrackVerdict::kNoTruth, "without truth"},
                                       {TrackVerdict::kNoDepth, "without depth"},
+                                      {TrackVerdict::kMoves, "on what moves"},
                                       {TrackVerdict::kNotTriangulated, "not triangulated"}}) {
     const auto count = static_cast<long long>(Count(accuracy, verdict));
     if (count > 0) text += Format("; %lld %s", count, name);

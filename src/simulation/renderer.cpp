@@ -213,8 +213,8 @@ void Renderer::Render(const Tile& tile, const Visible& visible, TimeNs t, const 
   });
 }
 
-void Renderer::Depth(const Tile& tile, const Visible& visible, TimeNs t, const SE3& T_world_cam,
-                     std::span<float> depth) const {
+void Renderer::Depth(const Tile& tile, const Visible& visible, TimeNs t, const SE3& T_world_cam, std::span<float> depth,
+                     std::span<std::uint8_t> moving) const {
   const auto views = Viewer(scene_, t, T_world_cam).Views(visible.surfaces, Bounds(tile));
   RayBlock block;
   ForEachPart(tile, 1, [&](const Tile& part) {
@@ -223,14 +223,19 @@ void Renderer::Depth(const Tile& tile, const Visible& visible, TimeNs t, const S
     const auto place = [&](int ray) {
       return (part.y0 - tile.y0 + ray / part.width) * tile.width + part.x0 - tile.x0 + ray % part.width;
     };
-    for (int i = 0; i < block.count; ++i) depth[place(i)] = std::numeric_limits<float>::quiet_NaN();
+    for (int i = 0; i < block.count; ++i) {
+      depth[place(i)] = std::numeric_limits<float>::quiet_NaN();
+      moving[place(i)] = 0;
+    }
     Walk(seen, &block, [&](int i, int surface) {
       if (surface < 0) return 0.0F;
       const float z = 1.0F / block.w[i];
       if (LookUp(*seen[surface], block, i, z).coverage < 0.5F) return 1.0F;
       const int x = part.x0 + block.ray[i] % part.width;
       const int y = part.y0 + block.ray[i] / part.width;
-      if (blind_[y * camera_.width() + x] == 0) depth[place(block.ray[i])] = z;
+      if (blind_[y * camera_.width() + x] != 0) return 0.0F;
+      depth[place(block.ray[i])] = z;
+      moving[place(block.ray[i])] = seen[surface]->moves ? 1 : 0;
       return 0.0F;
     });
   });

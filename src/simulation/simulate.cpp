@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "evo/simulation/renderer.hpp"
+#include "evo/simulation/true_maps.hpp"
 #include "simulation/exposure.hpp"
 
 namespace evo {
@@ -45,6 +46,7 @@ class Simulation {
         motion_(motion),
         options_(options),
         renderer_(scene, camera, options.samples),
+        depth_camera_(scene, camera, pool),
         sensor_(camera.width(), camera.height(), sensor, seed),
         pool_(pool),
         sink_(sink),
@@ -161,11 +163,7 @@ class Simulation {
   }
 
   void DeliverImage(TimeNs t) {
-    RenderFrame(t, [&](const Tile& tile, const Renderer::Visible& visible, const SE3& T_world_cam) {
-      Renderer::Radiance radiance;
-      renderer_.Render(tile, visible, t, T_world_cam, &radiance);
-      return At(t, radiance);
-    });
+    RenderFrame(t);
     const auto after = batch_.t.end() - std::ranges::lower_bound(batch_.t, t);
     ++counts_.images;
     sink_->OnImage(t, exposure_.Expose(camera_.width(), camera_.height(), frame_),
@@ -173,24 +171,20 @@ class Simulation {
   }
 
   void DeliverDepth(TimeNs t) {
-    RenderFrame(t, [&](const Tile& tile, const Renderer::Visible& visible, const SE3& T_world_cam) {
-      std::vector<float> depth(PixelsOf(tile));
-      renderer_.Depth(tile, visible, t, T_world_cam, depth);
-      return depth;
-    });
     ++counts_.depth_maps;
-    sink_->OnDepth(t, {camera_.width(), camera_.height(), {frame_.begin(), frame_.end()}});
+    sink_->OnDepth(t, depth_camera_.At(t, motion_(t)));
   }
 
-  /// All tiles at `t` into `frame_`. `render(tile, visible, T_world_cam)` gives a tile's values.
-  template <typename RenderTile>
-  void RenderFrame(TimeNs t, const RenderTile& render) {
+  /// All tiles at `t` into `frame_`.
+  void RenderFrame(TimeNs t) {
     frame_.resize(PixelsOf({0, 0, camera_.width(), camera_.height()}));
     const SE3 T_world_cam = motion_(t);
     pool_->ForEach(tiles_.size(), [&](std::size_t i) {
       const Tile& tile = tiles_[i];
       const auto visible = renderer_.FindVisible(tile, t, t, T_world_cam, T_world_cam);
-      const std::vector<float> values = render(tile, visible, T_world_cam);
+      Renderer::Radiance radiance;
+      renderer_.Render(tile, visible, t, T_world_cam, &radiance);
+      const std::vector<float> values = At(t, radiance);
       for (int row = 0; row < tile.height; ++row) {
         std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(row) * tile.width, tile.width,
                     frame_.begin() + static_cast<std::ptrdiff_t>(tile.y0 + row) * camera_.width() + tile.x0);
@@ -212,6 +206,7 @@ class Simulation {
   const CameraMotion& motion_;
   const SimulationOptions& options_;
   Renderer renderer_;
+  DepthCamera depth_camera_;
   EventSensor sensor_;
   ThreadPool* pool_;
   SimulationSink* sink_;

@@ -69,6 +69,7 @@ bool Viewer::View(int surface, const RayBox& rays, SurfaceView* view) {
   view->texture = &texture;
   view->light = static_cast<float>(scene_.lighting.ambient) * s.shade;
   view->emission = s.emission;
+  view->moves = s.body != 0;
   view->normal = (n / (k > 0.0 ? area : -area)).cast<float>();
   view->distance = static_cast<float>(std::abs(k) / area);
   return true;

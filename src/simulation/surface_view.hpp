@@ -45,6 +45,7 @@ struct SurfaceView {
   const Texture* texture = nullptr;
   float light = 0.0F;  ///< ambient light times shade
   float emission = 0.0F;
+  bool moves = false;                                ///< belongs to a body that does
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< unit, away from the camera, in its frame
   float distance = 0.0F;                             ///< of the plane from the camera, m
 

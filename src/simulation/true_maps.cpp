@@ -20,17 +20,20 @@ DepthCamera::DepthCamera(const Scene& scene, const Camera& camera, ThreadPool* p
 
 DepthMap DepthCamera::At(TimeNs t, const SE3& T_world_cam) const {
   const auto width = static_cast<std::size_t>(camera_.width());
-  DepthMap map{camera_.width(), camera_.height(), {}};
-  map.depth.resize(width * static_cast<std::size_t>(camera_.height()));
+  const std::size_t pixels = width * static_cast<std::size_t>(camera_.height());
+  DepthMap map{camera_.width(), camera_.height(), std::vector<double>(pixels), std::vector<std::uint8_t>(pixels)};
   pool_->ForEach(tiles_.size(), [&](std::size_t i) {
     const Tile& tile = tiles_[i];
-    std::vector<float> depth(static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height));
+    const std::size_t tile_pixels = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
+    std::vector<float> depth(tile_pixels);
+    std::vector<std::uint8_t> moving(tile_pixels);
     const auto visible = renderer_.FindVisible(tile, t, t, T_world_cam, T_world_cam);
-    renderer_.Depth(tile, visible, t, T_world_cam, depth);
+    renderer_.Depth(tile, visible, t, T_world_cam, depth, moving);
     for (int row = 0; row < tile.height; ++row) {
-      const auto place = static_cast<std::size_t>(tile.y0 + row) * width + static_cast<std::size_t>(tile.x0);
-      std::copy_n(depth.begin() + static_cast<std::ptrdiff_t>(row) * tile.width, tile.width,
-                  map.depth.begin() + static_cast<std::ptrdiff_t>(place));
+      const auto from = static_cast<std::ptrdiff_t>(row) * tile.width;
+      const auto to = static_cast<std::ptrdiff_t>(static_cast<std::size_t>(tile.y0 + row) * width) + tile.x0;
+      std::copy_n(depth.begin() + from, tile.width, map.depth.begin() + to);
+      std::copy_n(moving.begin() + from, tile.width, map.moving.begin() + to);
     }
   });
   return map;

@@ -183,20 +183,22 @@ Eigen::Matrix<double, 2, 3> AssociationField::OwnMoments(const DensityMap& map, 
   return moments / sum[0];
 }
 
-Eigen::Matrix2d AssociationField::Information(const DensityMap& map) const {
-  Eigen::Array4f sum = Eigen::Array4f::Zero();  // of the weight and of the pull's xx, xy, yy
+Eigen::Matrix2d AssociationField::Information(const DensityMap& map, const AssociationField& other) const {
+  Eigen::Array4f sum = Eigen::Array4f::Zero();  // xx, xy, yx, yy
+  float weight = 0.0f;
   const float* votes = map.plane(0);
   for (std::size_t i = 0; i < table_.size(); ++i) {
-    const Pull& pull = table_[i];
-    if (!(pull[0] > 0.0f)) continue;
-    const float per_weight = 1.0f / pull[3];
-    sum += votes[i] * Pull(pull[3], per_weight * pull[1] * pull[1], per_weight * pull[1] * pull[2],
-                           per_weight * pull[2] * pull[2]);
+    const Pull& one = table_[i];
+    const Pull& two = other.table_[i];
+    if (!(one[3] > 0.0f)) continue;
+    sum += votes[i] / one[3] * Pull(one[1] * two[1], one[1] * two[2], one[2] * two[1], one[2] * two[2]);
+    weight += votes[i] * one[3];
   }
-  if (!(sum[0] > 0.0f)) return Eigen::Matrix2d::Zero();
+  if (!(weight > 0.0f)) return Eigen::Matrix2d::Zero();
+  const float across = 0.5f * (sum[1] + sum[2]);
   Eigen::Matrix2d information;
-  information << sum[1], sum[2], sum[2], sum[3];
-  return information / (sum[0] * std::pow(sigma_px_, 4));
+  information << sum[0], across, across, sum[3];
+  return information / (weight * std::pow(sigma_px_, 4));
 }
 
 }  // namespace evo

@@ -1,6 +1,8 @@
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "evo/tracking/corner_detector.hpp"
 #include "evo/tracking/feature_tracker.hpp"
@@ -11,16 +13,26 @@ namespace {
 
 constexpr int kTemplateMarginPx = 4;  // the template is larger than the patch, for events that stick out
 constexpr double kCandidates = 1.5;   // corners tried for each feature that is missing: many are no features
-// Of the density that is asked for information; fixed, so that the same number means the same for all options.
+// Of the densities that are asked for information.
 constexpr double kInformationSigmaPx = 1.0;
 constexpr double kInformationOutlierShare = 0.2;
-constexpr double kInformationGain = 0.01;  // share of one more feature in what is usual
+constexpr std::size_t kRemembered = 200;  // features with which a new one is compared
 
-/// Of an event, in the direction in which the events tell least of where they are.
-double SmallestInformation(const DensityMap& events) {
-  thread_local AssociationField field;
-  field.Build(events, kInformationSigmaPx, kInformationOutlierShare);
-  const Eigen::Matrix2d m = field.Information(events);
+/// Of an event, in the direction in which the events tell least of where they are, as far as both halves of the window
+/// say the same: neither noise nor a pattern that does not keep its shape tells anything.
+double SmallestInformation(const LocalEvents& events, const PatchMotion& motion, const DensityMap& all) {
+  thread_local TemplatePoints points;
+  thread_local std::array<AssociationField, 2> fields;
+  points.Update(events, motion);
+  std::array<DensityMap, 2> halves{DensityMap(all.radius(), all.planes()), DensityMap(all.radius(), all.planes())};
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    DensityMap& half = halves[events.dt[i] > 0.0f ? 1 : 0];
+    half.Vote(points.u[i], points.v[i], half.PlaneOf(events.polarity[i]), 1.0f);
+  }
+  for (std::size_t i = 0; i < halves.size(); ++i) {
+    fields[i].Build(halves[i], kInformationSigmaPx, kInformationOutlierShare);
+  }
+  const Eigen::Matrix2d m = fields[0].Information(all, fields[1]);
   const double mean = 0.5 * m.trace();
   return mean - std::sqrt(std::max(0.0, mean * mean - m.determinant()));
 }
@@ -52,21 +64,24 @@ void FeatureTracker::Refill(const EventHistory& history, TimeNs t) {
   for (auto& feature : born) {
     if (feature) fit.push_back(std::move(*feature));
   }
-  LearnUsualInformation(fit);
+  const double least = LeastInformation(fit);
   std::ranges::stable_sort(fit, std::ranges::greater(), &TrackedFeature::information);
   for (auto& feature : fit) {
     if (features_.size() >= static_cast<std::size_t>(options_.features)) break;
-    if (feature.information < options_.smallest_information * usual_information_) break;
+    if (feature.information < least) break;
     feature.id = next_id_++;
     features_.push_back(std::move(feature));
   }
 }
 
-void FeatureTracker::LearnUsualInformation(const std::vector<TrackedFeature>& born) {
-  for (const auto& feature : born) {
-    const double share = std::max(kInformationGain, 1.0 / static_cast<double>(++births_));
-    usual_information_ += share * (feature.information - usual_information_);
-  }
+double FeatureTracker::LeastInformation(const std::vector<TrackedFeature>& born) {
+  for (const auto& feature : born) informations_.push_back(feature.information);
+  while (informations_.size() > kRemembered) informations_.pop_front();
+  std::vector<double> all(informations_.begin(), informations_.end());
+  const auto refused = static_cast<std::ptrdiff_t>(options_.uninformative_share * static_cast<double>(all.size()));
+  if (refused == 0) return -std::numeric_limits<double>::infinity();
+  std::ranges::nth_element(all, all.begin() + refused);
+  return all[static_cast<std::size_t>(refused)];
 }
 
 std::optional<TrackedFeature> FeatureTracker::Birth(const EventHistory& history, TimeNs t,
@@ -97,7 +112,7 @@ std::optional<TrackedFeature> FeatureTracker::Birth(const EventHistory& history,
   motion.bend = patch.bend;
   Accumulate(events, motion, &feature.events);
   if (feature.events.EffectiveCells() < options_.fewest_cells) return std::nullopt;
-  feature.information = SmallestInformation(feature.events);
+  feature.information = SmallestInformation(events, motion, feature.events);
   feature.events.Scale(static_cast<float>(1.0 / feature.events.Total()));
   return feature;
 }

@@ -55,8 +55,8 @@ void Register(Parameters& parameters, TrackerOptions& o) {
                  "the same where that leaves room for too few (px)");
   parameters.Add("tracker.corner_share", &o.corner_share, 0.0, 1.0, "weakest corner as a share of a strong one");
   parameters.Add("tracker.corner_window_motion_px", &o.corner_window_motion_px, 0.5, 20.0, "in the corner image (px)");
-  parameters.Add("tracker.smallest_information", &o.smallest_information, 0.0, 2.0,
-                 "of an event about a new feature's position, in the worst direction, as a share of the usual");
+  parameters.Add("tracker.uninformative_share", &o.uninformative_share, 0.0, 0.95,
+                 "share of the new features that is refused: those whose events tell least of their position");
   parameters.Add("tracker.shortest_life_s", &o.shortest_life_s, 0.0, 10.0,
                  "a corner that leaves the image sooner is not taken (s)");
   parameters.Add("tracker.fewest_cells", &o.fewest_cells, 0.0, 1000.0, "that a template's events fill (px)");

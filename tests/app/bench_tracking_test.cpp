@@ -32,7 +32,8 @@ TEST_F(BenchTrackingTest, RowsMediansAndTargets) {
       EXPECT_GT(std::stod(row.at(name)), 0.0) << name;
     }
     for (const std::string name :
-         {"tracks_over_3_px_share", "tracks_mostly_over_3_px_share", "positions_past_3_px_share"}) {
+         {"tracks_over_3_px_share", "tracks_mostly_over_3_px_share", "tracks_astray_over_3_px_share",
+          "positions_past_3_px_share", "tracks_that_move_share"}) {
       EXPECT_GE(std::stod(row.at(name)), 0.0) << name;
       EXPECT_LT(std::stod(row.at(name)), 1.0) << name;
     }

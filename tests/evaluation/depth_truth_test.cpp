@@ -5,6 +5,7 @@
 
 #include "evaluation/track_scene.hpp"
 #include "evo/core/error.hpp"
+#include "evo/evaluation/track_accuracy.hpp"
 #include "evo/evaluation/track_truth.hpp"
 
 namespace evo {
@@ -101,6 +102,45 @@ TEST_F(DepthTruthTest, VisibleUntilSomethingHidesIt) {
   EXPECT_LE(until, 1.01);
   EXPECT_FALSE(truth.positions.back());
   EXPECT_TRUE(truth.positions[90]);
+}
+
+/// Two px to the right of x = 119 begins a nearer wall, which moves twice as fast in the image.
+TEST_F(DepthTruthTest, ATrackBesideAnEdgeMayBeOnEitherSurface) {
+  TrackScene scene;
+  scene.walls.push_back({Eigen::Vector3d(0, 0, 0.2), 1.05, 9.0});  // 5 m ahead, seen from x = 121 on
+  TrackScene near;
+  near.walls = {{Eigen::Vector3d(0, 0, 0.2)}};
+  const Tracks with_wall = near.Follow(1, {119, 75}, 0.0, 0.8);
+  const auto truth = Find(scene, with_wall);
+  ASSERT_EQ(truth[0].verdict, TrackVerdict::kJudged);
+  ASSERT_EQ(truth[0].beside.size(), 1u);
+  for (std::size_t i = 0; i < with_wall.size(); ++i) {
+    const Eigen::Vector2d seen(with_wall[i].x, with_wall[i].y);
+    ASSERT_TRUE(truth[0].beside[0][i]) << i;
+    EXPECT_LT((*truth[0].beside[0][i] - seen).norm(), kFloatPx) << i;
+  }
+  const auto accuracy =
+      EvaluateTracks(GroupById(with_wall), truth, "depth", {0.5});  // the wall soon hides the point behind it
+  EXPECT_EQ(accuracy.thresholds[0].mostly_exceeding_share, 1.0);
+  EXPECT_EQ(accuracy.thresholds[0].stray_share, 0.0);
+  TrackTruthOptions narrow;
+  narrow.surface_reach_px = 1.0;
+  EXPECT_TRUE(Find(scene, with_wall, narrow)[0].beside.empty());
+  EXPECT_TRUE(Find(scene, near.Follow(1, {110, 75}, 0.0, 0.8))[0].beside.empty()) << "far from the edge";
+}
+
+TEST_F(DepthTruthTest, WhatMovesIsNotJudged) {
+  TrackScene scene;
+  scene.walls.push_back({Eigen::Vector3d(0, 0, 0.2), 1.05, 9.0, true});
+  Tracks tracks;
+  for (const auto& [id, x] : {std::pair{1, 140.0}, {2, 119.0}, {3, 110.0}}) {  // on it, beside it, away from it
+    const Tracks track = scene.Follow(id, {x, 75.0}, 0.0, 0.3);
+    tracks.insert(tracks.end(), track.begin(), track.end());
+  }
+  const auto truth = Find(scene, tracks);
+  EXPECT_EQ(truth[0].verdict, TrackVerdict::kMoves);
+  EXPECT_EQ(truth[1].verdict, TrackVerdict::kMoves);
+  EXPECT_EQ(truth[2].verdict, TrackVerdict::kJudged);
 }
 
 TEST_F(DepthTruthTest, NoDepthNoJudgement) {

@@ -20,7 +20,7 @@ struct Made {
   void Add(int count, double interval_s, const std::function<double(int)>& error, double true_lifetime_s = NAN) {
     const auto id = static_cast<std::int64_t>(tracks.size());
     tracks.push_back({id, {}});
-    truth.push_back({TrackVerdict::kJudged, {}, false, std::nullopt});
+    truth.push_back({.verdict = TrackVerdict::kJudged, .positions = {}, .beside = {}, .visible_until = std::nullopt});
     for (int i = 0; i < count; ++i) {
       tracks.back().observations.push_back({id, FromSeconds(interval_s * i), 50.0 + error(i), 60.0});
       truth.back().positions.emplace_back(Eigen::Vector2d(50.0, 60.0));
@@ -115,6 +115,31 @@ TEST(TrackAccuracy, ExpectedAgeIsTheAgeOfStableTracksTimesTheirShare) {
   EXPECT_NEAR(at_5px.expected_age_normalized, (0.5 + 0.0 + 0.0 + 0.4) / 4.0, 1e-12);
 }
 
+TEST(TrackAccuracy, AStrayTrackFollowsNoSurface) {
+  Made made;
+  for (int i = 0; i < 4; ++i) made.Add(11, 0.1, [](int k) { return 1.0 * k; });  // 5.5 px off at the median
+  made.Add(11, 0.1, Zero);
+  const auto beside = [&](std::size_t track, double off_px, std::size_t known) {
+    auto& positions = made.truth[track].beside.emplace_back(11);
+    for (std::size_t i = 0; i < known; ++i) {
+      const auto& seen = made.tracks[track].observations[i];
+      positions[i] = Eigen::Vector2d(seen.x, seen.y + off_px);
+    }
+  };
+  beside(0, 1.0, 11);  // follows this one
+  beside(1, 4.0, 11);  // nearer to this one, but does not follow it either
+  beside(1, 9.0, 11);
+  beside(2, 0.0, 5);  // the point leaves the image early
+  const auto accuracy = made.Evaluate({3.0});
+  EXPECT_DOUBLE_EQ(accuracy.thresholds[0].mostly_exceeding_share, 0.8);
+  EXPECT_DOUBLE_EQ(accuracy.thresholds[0].stray_share, 0.6);
+  EXPECT_DOUBLE_EQ(accuracy.tracks[0].surface_error_px, 1.0);
+  EXPECT_DOUBLE_EQ(accuracy.tracks[1].surface_error_px, 4.0);
+  EXPECT_DOUBLE_EQ(accuracy.tracks[2].surface_error_px, 5.0);
+  EXPECT_DOUBLE_EQ(accuracy.tracks[4].surface_error_px, 0.0);
+  EXPECT_GT(accuracy.thresholds[0].error_px.max, 2.9) << "the other errors are those from the track's own point";
+}
+
 TEST(TrackAccuracy, NormalizedExpectedAgeIsTheMeanOverThresholdsOf1To31Px) {
   Made made;
   made.Add(
@@ -147,13 +172,14 @@ TEST(TrackAccuracy, CountsWhatItDoesNotJudge) {
   Made made;
   made.Add(5, 0.1, Zero);
   made.Add(1, 0.1, Zero);
-  for (const auto verdict : {TrackVerdict::kNoDepth, TrackVerdict::kNoTruth, TrackVerdict::kNotTriangulated}) {
+  for (const auto verdict :
+       {TrackVerdict::kNoDepth, TrackVerdict::kMoves, TrackVerdict::kNoTruth, TrackVerdict::kNotTriangulated}) {
     made.Add(5, 0.1, [](int) { return 1e3; });
     made.truth.back().verdict = verdict;
   }
   const auto accuracy = made.Evaluate({5.0});
   for (const auto verdict : {TrackVerdict::kJudged, TrackVerdict::kTooShort, TrackVerdict::kNoDepth,
-                             TrackVerdict::kNoTruth, TrackVerdict::kNotTriangulated}) {
+                             TrackVerdict::kMoves, TrackVerdict::kNoTruth, TrackVerdict::kNotTriangulated}) {
     EXPECT_EQ(Count(accuracy, verdict), 1);
   }
   EXPECT_EQ(accuracy.thresholds[1].error_px.max, 0.0);

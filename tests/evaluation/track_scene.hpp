@@ -26,16 +26,21 @@ struct Wall {
   Eigen::Vector3d n;
   double left = -1e9;
   double right = 1e9;
+  bool moves = false;  ///< said to move by itself (it does not)
 };
 
-/// Depth along z of what a ray of a camera meets first; NaN where there is nothing.
-inline double DepthAlong(const Eigen::Vector3d& ray_cam, const SE3& T_world_cam, const std::vector<Wall>& walls) {
+/// What a ray of a camera meets first.
+struct Meeting {
+  double depth = std::numeric_limits<double>::quiet_NaN();  ///< along z; NaN where there is nothing
+  bool moves = false;
+};
+inline Meeting Meet(const Eigen::Vector3d& ray_cam, const SE3& T_world_cam, const std::vector<Wall>& walls) {
   const Eigen::Vector3d ray = T_world_cam.rotation() * ray_cam;
-  double nearest = std::numeric_limits<double>::quiet_NaN();
+  Meeting nearest;
   for (const Wall& wall : walls) {
     const double z = (1.0 - wall.n.dot(T_world_cam.translation())) / wall.n.dot(ray);
     const double x = T_world_cam.translation().x() + z * ray.x();
-    if (z > 0.0 && x >= wall.left && x <= wall.right && !(z >= nearest)) nearest = z;
+    if (z > 0.0 && x >= wall.left && x <= wall.right && !(z >= nearest.depth)) nearest = {z, wall.moves};
   }
   return nearest;
 }
@@ -45,7 +50,9 @@ inline DepthMap Render(const Camera& camera, const SE3& T_world_cam, const std::
   for (int y = 0; y < camera.height(); ++y) {
     for (int x = 0; x < camera.width(); ++x) {
       const auto ray = camera.Undistort({x, y});
-      map.depth.push_back(ray ? DepthAlong(ray->homogeneous(), T_world_cam, walls) : 0.0);
+      const Meeting meeting = ray ? Meet(ray->homogeneous(), T_world_cam, walls) : Meeting{.depth = 0.0};
+      map.depth.push_back(meeting.depth);
+      map.moving.push_back(meeting.moves ? 1 : 0);
     }
   }
   return map;
@@ -83,7 +90,7 @@ struct TrackScene {
     const Trajectory poses = Poses();
     const SE3 T_first = *PoseAt(poses, Stamp(from), kNsPerSecond);
     const Eigen::Vector3d ray = camera.Undistort(pixel)->homogeneous();
-    const Eigen::Vector3d point = T_first * (DepthAlong(ray, T_first, walls) * ray);
+    const Eigen::Vector3d point = T_first * (Meet(ray, T_first, walls).depth * ray);
     Tracks track;
     for (TimeNs t = Stamp(from); t <= Stamp(to); t += 10'000'000) {
       const Eigen::Vector2d seen = camera.Project(PoseAt(poses, t, kNsPerSecond)->Inverse() * point);

@@ -11,6 +11,7 @@ namespace evo {
 namespace {
 
 constexpr char kMaps[] = "davis/left/depth_image_raw";
+constexpr char kMoving[] = "davis/left/moving_image_raw";
 constexpr char kStamps[] = "davis/left/depth_image_raw_ts";
 constexpr TimeNs kStart = 1506117912'000000000;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -54,6 +55,33 @@ TEST_F(DepthMapsTest, ReadsWhatItWrites) {
   EXPECT_EQ(first.At(0, 1), 4.5);
   EXPECT_TRUE(std::isnan(first.At(1, 1)));
   EXPECT_EQ(first.At(2, 1), 0.0);
+}
+
+TEST_F(DepthMapsTest, ReadsWhatMovesWhereItIsTold) {
+  const auto path = folder / "a_gt.hdf5";
+  MvsecGroundTruthWriter writer(path, {{kStart, SE3()}}, {{kStart, SE3()}});
+  writer.AppendDepth(kStart, {3, 2, {1, 2, 3, 4, 5, 6}, {0, 1, 0, 0, 0, 1}});
+  writer.Commit();
+  const DepthMap map = DepthMapReader(path).Read(0);
+  EXPECT_EQ(map.moving, (std::vector<std::uint8_t>{0, 1, 0, 0, 0, 1}));
+  EXPECT_TRUE(map.IsMoving(1, 0) && map.IsMoving(2, 1));
+  EXPECT_FALSE(map.IsMoving(0, 0) || map.IsMoving(1, 1));
+  const DepthMap silent = DepthMapReader(Store({1.0, 2.0})).Read(0);
+  EXPECT_TRUE(silent.moving.empty());
+  EXPECT_FALSE(silent.IsMoving(1, 0));
+}
+
+TEST_F(DepthMapsTest, RefusesAnImpossibleMaskOfWhatMoves) {
+  auto path = Store({1.0, 2.0});
+  StoreTable(path, kMoving, {2, 3, 2}, std::vector<double>(12, 0.0));
+  ExpectMentions(RefusalOf(path), {kMoving, "shape", kMaps});
+  path = Store({1.0, 2.0});
+  std::vector<double> moving(12, 1.0);
+  moving[7] = 0.5;
+  StoreTable(path, kMoving, {2, 2, 3}, moving);
+  const DepthMapReader reader(path);
+  EXPECT_TRUE(reader.Read(0).IsMoving(0, 0));
+  ExpectMentions(Refusal([&] { reader.Read(1); }), {"gt.hdf5", kMoving, "row 1", "0.5"});
 }
 
 TEST_F(DepthMapsTest, NothingAppearsBeforeCommit) {

@@ -37,7 +37,8 @@ TEST_F(TrackReportTest, QualityIsALongTable) {
   EXPECT_TRUE(csv.starts_with("quantity,unit,threshold_px,age_low_s,age_high_s,value\ntruth,name,,,,depth\n")) << csv;
   for (const char* row :
        {"\ntracks,count,,,,2\n", "\ntracks_judged,count,,,,1\n", "\ntracks_no_depth,count,,,,1\n",
-        "\ntracks_too_short,count,,,,0\n", "\ncompared_positions,count,1.500000000,,,3\n",
+        "\ntracks_too_short,count,,,,0\n", "\ntracks_moves,count,,,,0\n",
+        "\nstray_share,share,1.500000000,,,0.000000000\n", "\ncompared_positions,count,1.500000000,,,3\n",
         "\nerror_mean,px,1.500000000,,,1.000000000\n", "\nfeature_age_mean,s,5.000000000,,,0.200000000\n",
         "\nexpected_feature_age_normalized,share,5.000000000,,,0.500000000\n", "\nerror_mean,px,,,,2.250000000\n",
         "\nexceeding_share,share,5.000000000,,,1.000000000\n", "\nexceeding_share,share,,,,0.000000000\n",
@@ -50,10 +51,10 @@ TEST_F(TrackReportTest, ErrorsHaveARowForEachTrack) {
   WriteTrackErrors(folder / "track_errors.csv", SampleAccuracy());
   EXPECT_EQ(ReadFile(folder / "track_errors.csv"),
             "id,start,verdict,observations,lifetime_s,true_lifetime_s,compared,mean_error_px,median_error_px,"
-            "rmse_error_px,max_error_px,age_1.5px_s,outlier_1.5px,age_5px_s,outlier_5px\n"
+            "rmse_error_px,max_error_px,surface_error_px,age_1.5px_s,outlier_1.5px,age_5px_s,outlier_5px\n"
             "4,1500000000.000000000,judged,4,0.300000000,0.400000000,4,2.250000000,1.000000000,3.122498999,6.000000000,"
-            "0.200000000,0,0.200000000,0\n"
-            "9,1500000000.000000000,no_depth,4,0.300000000,,0,,,,,,,,\n");
+            "1.000000000,0.200000000,0,0.200000000,0\n"
+            "9,1500000000.000000000,no_depth,4,0.300000000,,0,,,,,,,,,\n");
 }
 
 TEST_F(TrackReportTest, SummaryNamesTheTruthAndWhatIsNotJudged) {

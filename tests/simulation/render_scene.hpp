@@ -85,7 +85,8 @@ inline std::vector<float> RenderAll(const Scene& scene, const Camera& camera, in
 inline std::vector<float> DepthOfAll(const Scene& scene, const Camera& camera, TimeNs t = 0,
                                      const SE3& T_world_cam = SE3()) {
   std::vector<float> image(static_cast<std::size_t>(camera.width()) * static_cast<std::size_t>(camera.height()));
-  Renderer(scene, camera, 1).Depth(Whole(camera), All(scene), t, T_world_cam, image);
+  std::vector<std::uint8_t> moving(image.size());
+  Renderer(scene, camera, 1).Depth(Whole(camera), All(scene), t, T_world_cam, image, moving);
   return image;
 }
 

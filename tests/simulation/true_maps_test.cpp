@@ -13,13 +13,13 @@ const SE3 kPose(so3::Exp({0.05, -0.1, 0.2}), {0.3, -0.2, 0.5});
 constexpr TimeNs kTime = 40'000'000;
 
 TEST(DepthCamera, SeesWhatEachRayMeets) {
-  const Scene scene = RandomScene(150, 5);
+  const Scene scene = RandomScene(150, 6);
   for (const Camera& camera : {Davis346(), Camera(Rectified(Davis346().calibration()))}) {
     ThreadPool pool(2);
     const DepthMap map = DepthCamera(scene, camera, &pool).At(kTime, kPose);
     ASSERT_EQ(map.width, 346);
     ASSERT_EQ(map.height, 260);
-    int seen = 0;
+    int seen = 0, moving = 0;
     for (int y = 0; y < map.height; y += 9) {
       for (int x = 0; x < map.width; x += 9) {
         const Hit hit = CastRay(scene, *camera.Undistort({x, y}), kTime, kPose);
@@ -27,10 +27,15 @@ TEST(DepthCamera, SeesWhatEachRayMeets) {
         ASSERT_EQ(hit.surface >= 0, std::isfinite(map.At(x, y))) << x << ", " << y;
         if (hit.surface < 0) continue;
         ++seen;
+        const bool moves = scene.surfaces[static_cast<std::size_t>(hit.surface)].body != 0;
+        moving += moves ? 1 : 0;
+        EXPECT_EQ(map.IsMoving(x, y), moves) << x << ", " << y;
         EXPECT_NEAR(map.At(x, y), hit.depth, 1e-4 * hit.depth);
       }
     }
     EXPECT_GT(seen, 250);
+    EXPECT_GT(moving, 50);
+    EXPECT_LT(moving, seen);
   }
 }
 
@@ -41,6 +46,7 @@ TEST(DepthCamera, IsTheSameForAnyNumberOfThreads) {
   ThreadPool three(3);
   const DepthMap map = DepthCamera(scene, camera, &one).At(kTime, kPose);
   const DepthMap same = DepthCamera(scene, camera, &three).At(kTime, kPose);
+  EXPECT_EQ(map.moving, same.moving);
   for (std::size_t i = 0; i < map.depth.size(); ++i) {
     ASSERT_TRUE(map.depth[i] == same.depth[i] || (std::isnan(map.depth[i]) && std::isnan(same.depth[i]))) << i;
   }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 namespace evo {
 namespace {
@@ -119,10 +120,34 @@ TEST(AssociationField, InformationIsThatOfABlurredLine) {
     expected += weight * slope * slope;
     total += weight;
   }
-  const Eigen::Matrix2d information = field.Information(map);
+  const Eigen::Matrix2d information = field.Information(map, field);
   EXPECT_NEAR(information(1, 1), expected / total, 0.03);
   EXPECT_NEAR(information(0, 0), 0.0, 0.01);  // it may slide along itself
   EXPECT_NEAR(information(0, 1), 0.0, 1e-3);
+}
+
+TEST(AssociationField, NoiseInOneOfTwoDensitiesIsNoInformation) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> along(-10.0f, 10.0f);
+  std::normal_distribution<float> across(0.0f, 0.5f);
+  Eigen::Matrix2d own = Eigen::Matrix2d::Zero(), shared = Eigen::Matrix2d::Zero();
+  constexpr int kTrials = 50;
+  for (int trial = 0; trial < kTrials; ++trial) {  // a line, of which each half of the events knows some points
+    DensityMap all(12, 1), halves[2] = {DensityMap(12, 1), DensityMap(12, 1)};
+    for (int i = 0; i < 60; ++i) {
+      const float x = along(random), y = across(random);
+      all.Vote(x, y, 0, 1.0f);
+      halves[i % 2].Vote(x, y, 0, 1.0f);
+    }
+    AssociationField field, fields[2];
+    field.Build(all, 1.0, 0.2);
+    for (int i = 0; i < 2; ++i) fields[i].Build(halves[i], 1.0, 0.2);
+    own += field.Information(all, field) / kTrials;
+    shared += fields[0].Information(all, fields[1]) / kTrials;
+  }
+  EXPECT_GT(own(0, 0), 0.02) << "clumps of the noise";
+  EXPECT_LT(std::abs(shared(0, 0)), 0.35 * own(0, 0));
+  EXPECT_GT(shared(1, 1), 0.5 * own(1, 1)) << "the line itself";
 }
 
 TEST(AssociationField, KeepsPolaritiesApart) {

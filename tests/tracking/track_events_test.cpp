@@ -88,7 +88,7 @@ TEST_F(TrackEventsTest, TracksFollowASceneThatTurnsBack) {
 double LeadOverCrosses(const Vector2d& velocity) {
   const CrossScene scene(60, 4);
   TrackerOptions options;
-  options.smallest_information = 0.0;  // as many crosses as can be had
+  options.uninformative_share = 0.0;  // as many crosses as can be had
   const TrackingResult tracked =
       TrackAll(scene.Events([&](double t) { return Vector2d(velocity * (t - 0.2)); }, 0.4, 1000.0), 2, options);
   std::vector<double> leads;
@@ -137,7 +137,7 @@ TEST(TrackEvents, FeaturesOutliveAStop) {
   EXPECT_LT(MedianNorm(errors), 0.2);
 }
 
-/// Of the tracks that live from before to after a bump, px.
+/// Of the tracks of three scenes that live from before to after a bump, px.
 std::vector<Vector2d> ErrorsOverABump(bool follow_jolts, double window_bend_px) {
   // Along at 40 px/s, and besides 22 px up within 60 ms and back within 160 ms.
   const auto moved = [](double t) {
@@ -148,8 +148,13 @@ std::vector<Vector2d> ErrorsOverABump(bool follow_jolts, double window_bend_px) 
   TrackerOptions options;
   options.follow_jolts = follow_jolts;
   options.window_bend_px = window_bend_px;
-  const TrackingResult tracked = TrackAll(CrossScene(120, 4).Events(moved, 0.7, 1000.0), 2, options);
-  return Errors(ById(tracked.tracks), moved, 0.25, 0.6);
+  options.uninformative_share = 0.0;  // as many crosses as can be had
+  std::vector<Vector2d> errors;
+  for (const unsigned seed : {6, 7, 8}) {
+    const TrackingResult tracked = TrackAll(CrossScene(120, seed).Events(moved, 0.7, 1000.0), 2, options);
+    for (const auto& error : Errors(ById(tracked.tracks), moved, 0.25, 0.6)) errors.push_back(error);
+  }
+  return errors;
 }
 
 bool IsAstray(const Vector2d& error) { return error.norm() > 1.0; }
@@ -158,17 +163,17 @@ constexpr double kAnyBend = 1000.0;
 
 TEST(TrackEvents, FeaturesFollowAJolt) {
   const std::vector<Vector2d> errors = ErrorsOverABump(true, kAnyBend);
-  EXPECT_GE(errors.size(), 8u);
-  EXPECT_EQ(std::ranges::count_if(errors, IsAstray), 0);
+  EXPECT_GE(errors.size(), 35u);
+  EXPECT_LE(std::ranges::count_if(errors, IsAstray), 1);
   // They take a neighbour for themselves.
-  EXPECT_GE(std::ranges::count_if(ErrorsOverABump(false, kAnyBend), IsAstray), 2);
+  EXPECT_GE(std::ranges::count_if(ErrorsOverABump(false, kAnyBend), IsAstray), 12);
 }
 
 TEST(TrackEvents, ShortWindowsKeepFeaturesInAJolt) {
   for (const bool follow_jolts : {true, false}) {
     const std::vector<Vector2d> errors = ErrorsOverABump(follow_jolts, TrackerOptions().window_bend_px);
-    EXPECT_GE(errors.size(), 6u);
-    EXPECT_EQ(std::ranges::count_if(errors, IsAstray), 0);
+    EXPECT_GE(errors.size(), 35u);
+    EXPECT_LE(std::ranges::count_if(errors, IsAstray), 2);
   }
 }
 

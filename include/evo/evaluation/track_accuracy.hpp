@@ -18,6 +18,8 @@ namespace evo {
 // first position that has a truth to the last one before the error first exceeds the threshold, or to the end of the
 // track. A track is stable at a threshold if its age there is not 0. Error statistics at a threshold take only what
 // lies within the feature age.
+// A stray track follows none of the surfaces around the place where it begins: its median error exceeds the threshold
+// whichever of them it is said to be on, see TrueTrack::beside.
 // Where this differs: [1] and [2] interpolate the track at the stamps of the truth, here it is the other way round; [1]
 // judges only the tracks that begin with the file, here all are judged; [2] ends the age one stamp earlier and
 // stretches asynchronous tracks over the whole true track, here a track lives until its last observation.
@@ -32,6 +34,7 @@ struct TrackErrors {
   // The rest is for judged tracks.
   std::vector<double> ages_s;             ///< of the positions compared, since the first with a truth
   std::vector<double> errors_px;          ///< of the same
+  double surface_error_px = 0.0;          ///< median error from the surface that it follows best
   std::optional<double> true_lifetime_s;  ///< how long the point is visible; empty if unknown
   std::vector<double> feature_ages_s;     ///< one for each threshold
 
@@ -50,6 +53,7 @@ struct ThresholdAccuracy {
   double track_error_median_px = 0.0;   ///< median over stable tracks of each one's median error
   double exceeding_share = 0.0;         ///< tracks whose error exceeds the threshold at any time
   double mostly_exceeding_share = 0.0;  ///< tracks whose median error does, over the whole life
+  double stray_share = 0.0;             ///< tracks that follow no surface
   double outlier_share = 0.0;           ///< tracks that are not stable: they exceed it at once
   Statistics feature_age_s;             ///< over stable tracks
   /// Mean feature age of stable tracks times their share, "expected feature age" of [2]: the same as the mean over all

@@ -29,6 +29,7 @@ enum class TrackVerdict {
   kTooShort,         ///< fewer than two observations at which the true position is known
   kNoTruth,          ///< no true track of this id, or no pose, at any of its stamps
   kNoDepth,          ///< the depth where it begins is unknown or jumps there
+  kMoves,            ///< begins on or beside something that moves by itself
   kNotTriangulated,  ///< its rays do not meet in one point in front of the cameras
 };
 
@@ -37,6 +38,9 @@ struct TrueTrack {
   TrackVerdict verdict = TrackVerdict::kNoTruth;
   /// One for each observation of the track, at its stamp; empty where not known or not visible.
   std::vector<std::optional<Eigen::Vector2d>> positions;
+  /// The same for the other surfaces around the place where it begins: a feature at the outline of a thing may be a
+  /// mark on either side of it. As long as they are in the image, hidden or not.
+  std::vector<std::vector<std::optional<Eigen::Vector2d>>> beside;
   /// The first known position is the track's own: the truth starts from it, and there is no error to see there.
   bool starts_at_observation = false;
   /// The last instant at which the point is seen; empty if that is not known.
@@ -44,7 +48,8 @@ struct TrueTrack {
 };
 
 struct TrackTruthOptions {
-  double depth_edge = 0.1;  ///< neighbouring depths that differ by a larger share belong to different surfaces
+  double depth_edge = 0.1;        ///< neighbouring depths that differ by a larger share belong to different surfaces
+  double surface_reach_px = 3.0;  ///< a feature may be on any surface this near to the place where it begins
 };
 void Register(Parameters& parameters, TrackTruthOptions& options);
 
@@ -60,7 +65,8 @@ std::vector<TrueTrack> TruthFromTracks(const std::vector<FeatureTrack>& tracks, 
 /// Poses and depth maps: the point is where the ray of the first observation meets the surface in the depth map
 /// nearest in time, and is projected into the camera at each later stamp. It is visible until it leaves the image or
 /// lies behind the surface of a depth map, both looked for at the stamps of the maps. (The "reprojection" of
-/// rpg_feature_tracking_analysis, there without lens distortion and occlusion.)
+/// rpg_feature_tracking_analysis, there without lens distortion and occlusion.) Where the map tells what moves, tracks
+/// that begin within `surface_reach_px` of such things are not judged.
 /// Throws Error (kInput) where the maps have not the size of the sensor.
 std::vector<TrueTrack> TruthFromDepth(const std::vector<FeatureTrack>& tracks, const Trajectory& trajectory,
                                       const Camera& camera, const DepthMapReader& maps, TimeNs max_gap,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <vector>
@@ -14,9 +15,15 @@ struct DepthMap {
   int width = 0;              ///< px
   int height = 0;             ///< px
   std::vector<double> depth;  ///< height x width, row-major
+  /// The same: 1 where what the camera sees moves by itself, 0 where it rests; empty if that is not known.
+  std::vector<std::uint8_t> moving = {};
 
-  double At(int x, int y) const {
-    return depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+  double At(int x, int y) const { return depth[IndexOf(x, y)]; }
+  bool IsMoving(int x, int y) const { return !moving.empty() && moving[IndexOf(x, y)] != 0; }
+
+ private:
+  std::size_t IndexOf(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
   }
 };
 
@@ -31,8 +38,9 @@ struct FlowMap {
 bool HasDepthMaps(const std::filesystem::path& path);
 
 /// The depth maps of the left camera's raw (distorted) image in an MVSEC _gt.hdf5: `davis/left/depth_image_raw`,
-/// N x height x width, and `davis/left/depth_image_raw_ts`, N stamps in s. Maps are read one at a time. All functions
-/// throw Error (kInput) with data set and row.
+/// N x height x width, and `davis/left/depth_image_raw_ts`, N stamps in s. Where there is a
+/// `davis/left/moving_image_raw` of the same shape (ours, not MVSEC's), it tells by 0 and 1 what moves. Maps are read
+/// one at a time. All functions throw Error (kInput) with data set and row.
 class DepthMapReader {
  public:
   explicit DepthMapReader(const std::filesystem::path& path);

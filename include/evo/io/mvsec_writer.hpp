@@ -44,7 +44,8 @@ class MvsecGroundTruthWriter {
   MvsecGroundTruthWriter(const std::filesystem::path& path, const Trajectory& odometry, const Trajectory& pose);
   ~MvsecGroundTruthWriter();
 
-  /// All maps of one kind in order of time and of one size.
+  /// All maps of one kind in order of time and of one size. What moves goes into `davis/left/moving_image_raw`, uint8;
+  /// either all maps tell it or none.
   void AppendDepth(TimeNs t, const DepthMap& map);
   void AppendRectifiedDepth(TimeNs t, const DepthMap& map);
   /// Stamped with the time from which on things move so far.

@@ -14,9 +14,9 @@ namespace evo {
 void WriteTrackQuality(const std::filesystem::path& path, const TrackAccuracy& accuracy);
 
 /// track_errors.csv: a row a track: `id`, `start` (s), `verdict` (judged, too_short, no_truth, no_depth,
-/// not_triangulated), `observations`, `lifetime_s`, `true_lifetime_s`, `compared` positions and the `mean`, `median`,
-/// `rmse`, `max` of their error (px), then for each threshold `age_Tpx_s`, the feature age, and `outlier_Tpx`, 1 where
-/// it is 0. Cells of tracks that are not judged are empty. Throws Error (kOutput).
+/// moves, not_triangulated), `observations`, `lifetime_s`, `true_lifetime_s`, `compared` positions and the `mean`,
+/// `median`, `rmse`, `max` of their error (px), `surface_error_px`, then for each threshold `age_Tpx_s`, the feature
+/// age, and `outlier_Tpx`, 1 where it is 0. Cells of tracks that are not judged are empty. Throws Error (kOutput).
 void WriteTrackErrors(const std::filesystem::path& path, const TrackAccuracy& accuracy);
 
 /// Median and quartiles of the error over the age of the tracks, with the number of tracks of that age.

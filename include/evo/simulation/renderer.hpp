@@ -62,8 +62,9 @@ class Renderer {
   void Render(const Tile& tile, const Visible& visible, TimeNs t, const SE3& T_world_cam, Radiance* radiance) const;
 
   /// Depth (z in the camera frame, m) along the rays through the pixel centres of the nearest surface that covers half
-  /// or more there, NaN where there is only sky or no ray.
-  void Depth(const Tile& tile, const Visible& visible, TimeNs t, const SE3& T_world_cam, std::span<float> depth) const;
+  /// or more there, NaN where there is only sky or no ray; and 1 where it is of something that moves, else 0.
+  void Depth(const Tile& tile, const Visible& visible, TimeNs t, const SE3& T_world_cam, std::span<float> depth,
+             std::span<std::uint8_t> moving) const;
 
   /// Upper estimate of the mean speed, in px/s, of what `tile` shows between the two poses and times.
   double ImageSpeed(const Tile& tile, const Visible& visible, TimeNs from, TimeNs to, const SE3& T_world_cam_from,

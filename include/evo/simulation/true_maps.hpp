@@ -14,7 +14,8 @@ class DepthCamera {
  public:
   DepthCamera(const Scene& scene, const Camera& camera, ThreadPool* pool);
 
-  /// Depth along the rays through the pixel centres, NaN where there is only sky; the same for any number of threads.
+  /// Depth along the rays through the pixel centres, NaN where there is only sky, and what moves; the same for any
+  /// number of threads.
   DepthMap At(TimeNs t, const SE3& T_world_cam) const;
 
  private:

@@ -86,10 +86,11 @@ class AssociationField {
   Eigen::Matrix<double, 2, 3> OwnMoments(const DensityMap& map, const Eigen::Matrix2d& linear,
                                          double patch_radius_px) const;
 
-  /// What one event of the map tells about where the pattern is, 1/px^2: the mean of grad D grad D^T / D^2, the Fisher
-  /// information of the density. Small along a direction in which the pattern may slide (the aperture problem), and
-  /// where it is blurred.
-  Eigen::Matrix2d Information(const DensityMap& map) const;
+  /// What one event of the map tells about where the pattern is, 1/px^2, as far as this density and the other one
+  /// agree: the mean of grad D grad D'^T / (D D'), of one density with itself its Fisher information. Small along a
+  /// direction in which the pattern may slide (the aperture problem), where it is blurred, and where the densities of
+  /// two sets of events differ.
+  Eigen::Matrix2d Information(const DensityMap& map, const AssociationField& other) const;
 
  private:
   void WeighCentre();

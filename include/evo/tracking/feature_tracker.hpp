@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <vector>
 
@@ -98,7 +99,8 @@ class FeatureTracker : public Tracker {
 
   // In feature_birth.cpp.
   void Refill(const EventHistory& history, TimeNs t);
-  void LearnUsualInformation(const std::vector<TrackedFeature>& born);
+  /// What a new feature must tell of its position: more than that share of the last ones, the refused ones among them.
+  double LeastInformation(const std::vector<TrackedFeature>& born);
   std::optional<TrackedFeature> Birth(const EventHistory& history, TimeNs t, const Eigen::Vector2d& position,
                                       const std::vector<DepthSample>& depths) const;
   int planes() const { return options_.use_polarity ? 2 : 1; }
@@ -111,8 +113,7 @@ class FeatureTracker : public Tracker {
   EpipolarFilter epipolar_filter_;
   FlowField flow_field_;
   RefillPolicy refill_;
-  double usual_information_ = 0.0;  // of features at birth, those included that were not good enough
-  std::int64_t births_ = 0;         // that it is the mean of
+  std::deque<double> informations_;  // of the last features at birth, the refused ones among them
   std::vector<TrackedFeature> features_;
   std::vector<FeatureAlignment> alignments_;  // of the features, in their order; some more are kept for their memory
   std::int64_t next_id_ = 0;

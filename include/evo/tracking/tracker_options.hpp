@@ -64,7 +64,7 @@ struct TrackerOptions {
   double corner_window_motion_px = 3.0;
   /// Of an event about the position of a new feature, as a share of the mean over all that were tried: its pattern must
   /// neither slide nor blur. About half of them are refused at 1.
-  double smallest_information = 0.95;
+  double uninformative_share = 0.55;
   double shortest_life_s = 0.12;  ///< a corner that leaves the image sooner than this is not taken
   double fewest_cells = 8.0;      ///< px that a template's events fill: a hot pixel fills one
 
