@@ -35,11 +35,12 @@ FeatureTracker::FeatureTracker(const Camera& camera, const TrackerOptions& optio
       flow_field_(width_, height_, options),
       refill_(options) {}
 
-void FeatureTracker::Process(const EventHistory& history, TimeNs t) {
+void FeatureTracker::Process(const EventHistory& history, TimeNs t, const std::function<void()>& read_ahead) {
   if (last_) Track(history, t);
   if (options_.ego_motion) {
     const double step_s = last_ ? ToSeconds(t - *last_) : 0.0;
-    ego_motion_.Update(Flows(), step_s);
+    // Neither can be split, but neither needs the other.
+    pool_->ForEach(2, [&](std::size_t i) { i == 0 ? ego_motion_.Update(Flows(), step_s) : read_ahead(); });
     LearnDepths(step_s);
   }
   last_ = t;

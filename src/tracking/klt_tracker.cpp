@@ -48,7 +48,7 @@ cv::Mat KltTracker::EventImage(const EventHistory& history, TimeNs t) const {
   return image;
 }
 
-void KltTracker::Process(const EventHistory& history, TimeNs t) {
+void KltTracker::Process(const EventHistory& history, TimeNs t, const std::function<void()>& /*read_ahead*/) {
   const cv::Mat events = EventImage(history, t);
   std::vector<cv::Mat> pyramid;
   cv::buildOpticalFlowPyramid(Gray(events), pyramid, patch_, kLevels);

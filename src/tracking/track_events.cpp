@@ -37,12 +37,12 @@ TrackingResult TrackEvents(EventReader* reader, const Camera& camera, const Trac
   const TimeNs half_window = FromSeconds(0.5 * options.longest_window_s);
   std::optional<TimeNs> dropped;  // frame at which old events were forgotten
 
-  const auto process = [&](TimeNs t) {
+  const auto process = [&](TimeNs t, const std::function<void()>& read_ahead) {
     if (!dropped || t - *dropped >= FromSeconds(kBetweenDropsS)) {
       history.DropBefore(t - tracker->before());
       dropped = t;
     }
-    tracker->Process(history, t);
+    tracker->Process(history, t, read_ahead);
     result.frames.push_back(t);
     if (tracker->detected()) ++result.key_frames;
     const Tracks observations = tracker->Observations();
@@ -66,20 +66,22 @@ TrackingResult TrackEvents(EventReader* reader, const Camera& camera, const Trac
     if (!frame) frame = block.t.front() + std::min(half_window, interval);
     last = block.t.back();
     result.events += block.size();
-    for (std::size_t appended = 0; appended < block.size();) {
-      // No further than the next frame sees: the fewer events there are, the faster those of a patch are found.
-      const auto visible = std::ranges::upper_bound(block.t, *frame + tracker->after());
+    std::size_t appended = 0;
+    // No further than a frame sees: the fewer events there are, the faster those of a patch are found.
+    const auto append_for = [&](TimeNs t) {
+      const auto visible = std::ranges::upper_bound(block.t, t + tracker->after());
       const auto end = static_cast<std::size_t>(visible - block.t.begin());
       history.Append(block, appended, end);
       appended = end;
-      if (appended == block.size()) break;
-      process(*frame);
-      *frame += interval;
+    };
+    append_for(*frame);
+    for (; appended < block.size(); *frame += interval, append_for(*frame)) {
+      process(*frame, [&] { append_for(*frame + interval); });
     }
     if (progress) progress(reader->progress());
   }
   if (frame) {
-    for (; *frame <= last; *frame += interval) process(*frame);
+    for (; *frame <= last; *frame += interval) process(*frame, [] {});
   }
   if (result.frames.size() < 2) {
     throw Error(

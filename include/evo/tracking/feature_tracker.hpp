@@ -62,7 +62,7 @@ class FeatureTracker : public Tracker {
  public:
   FeatureTracker(const Camera& camera, const TrackerOptions& options, ThreadPool* pool);
 
-  void Process(const EventHistory& history, TimeNs t) override;
+  void Process(const EventHistory& history, TimeNs t, const std::function<void()>& read_ahead) override;
   TimeNs before() const override { return FromSeconds(0.5 * options_.longest_window_s); }
   TimeNs after() const override { return before(); }
   Tracks Observations() const override;

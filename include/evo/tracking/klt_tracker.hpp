@@ -18,7 +18,7 @@ class KltTracker : public Tracker {
  public:
   KltTracker(int width, int height, const TrackerOptions& options, ThreadPool* pool);
 
-  void Process(const EventHistory& history, TimeNs t) override;
+  void Process(const EventHistory& history, TimeNs t, const std::function<void()>& read_ahead) override;
   TimeNs before() const override { return FromSeconds(options_.klt.longest_window_s); }
   TimeNs after() const override { return 0; }
   Tracks Observations() const override;

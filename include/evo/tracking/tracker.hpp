@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -17,8 +18,9 @@ class Tracker {
  public:
   virtual ~Tracker() = default;
 
-  /// Takes all features to the frame at `t`; `history` must hold the events of [t - before(), t + after()].
-  virtual void Process(const EventHistory& history, TimeNs t) = 0;
+  /// Takes all features to the frame at `t`; `history` must hold the events of [t - before(), t + after()]. Calls
+  /// `read_ahead`, which may add later events to it, once at most, from any thread, where it has time to spare.
+  virtual void Process(const EventHistory& history, TimeNs t, const std::function<void()>& read_ahead) = 0;
   virtual TimeNs before() const = 0;
   virtual TimeNs after() const = 0;
 
