@@ -29,6 +29,7 @@ ablations=(
   tracker.follow_jolts=false
   tracker.restore_shake=false
   tracker.uninformative_share=0
+  tracker.odd_share=0
   tracker.template_gain=1
   tracker.use_polarity=false
 )

@@ -11,6 +11,8 @@ namespace {
 constexpr int kCoarseIterations = 6;
 constexpr int kNewbornFrames = 5;      // until then a feature has to prove itself
 constexpr double kJoltPx = 0.2;        // motion by a jolt that is not left to the features' own alignment
+constexpr int kYouth = 12;             // frames after which a feature is judged for its oddity
+constexpr double kSlowestPxS = 4.0;    // flow to which a change of shape is compared, at least
 constexpr double kSlowdown = 0.9;      // of a feature without events, from frame to frame
 constexpr double kFlowShare = 0.28;    // of the predicted flow's error that a window corrects, usually
 constexpr double kSlopeGain = 0.1;     // share of what one frame tells about the slope of a feature's plane
@@ -33,7 +35,8 @@ FeatureTracker::FeatureTracker(const Camera& camera, const TrackerOptions& optio
       pool_(pool),
       ego_motion_(camera),
       flow_field_(width_, height_, options),
-      refill_(options) {}
+      refill_(options),
+      oddity_judge_(options.odd_share) {}
 
 void FeatureTracker::Process(const EventHistory& history, TimeNs t, const std::function<void()>& read_ahead) {
   if (last_) Track(history, t);
@@ -42,6 +45,7 @@ void FeatureTracker::Process(const EventHistory& history, TimeNs t, const std::f
     // Neither can be split, but neither needs the other.
     pool_->ForEach(2, [&](std::size_t i) { i == 0 ? ego_motion_.Update(Flows(), step_s) : read_ahead(); });
     LearnDepths(step_s);
+    WithdrawOdd();
   }
   last_ = t;
   detected_ = refill_.IsDue(features_.size());
@@ -51,6 +55,7 @@ void FeatureTracker::Process(const EventHistory& history, TimeNs t, const std::f
 Tracks FeatureTracker::Observations() const {
   Tracks observations;
   for (const auto& feature : features_) {
+    if (feature.withdrawn) continue;
     observations.push_back({feature.id, *last_, feature.filtered.x(), feature.filtered.y()});
   }
   return observations;
@@ -65,6 +70,7 @@ std::vector<FlowSample> FeatureTracker::Flows() const {
 std::vector<ObservedWindow> FeatureTracker::Windows() const {
   std::vector<ObservedWindow> windows;
   for (const auto& feature : features_) {
+    if (feature.withdrawn) continue;
     windows.push_back({static_cast<float>(ToSeconds(feature.half_window)), feature.told_flow.cast<float>()});
   }
   return windows;
@@ -194,7 +200,10 @@ bool FeatureTracker::Advance(const FeatureAlignment& alignment, double step_s, T
   if (is_found) {
     feature->flow = motion.flow;
     feature->told_flow = start.flow + UnexpectedFlow(alignment);
-    LearnSlope((motion.linear * start.linear.inverse() - Eigen::Matrix2d::Identity()) / step_s, feature);
+    const Eigen::Matrix2d unexpected_rate =
+        (motion.linear * start.linear.inverse() - Eigen::Matrix2d::Identity()) / step_s;
+    feature->oddity.Add(motion.offset, unexpected_rate / (motion.flow.norm() + kSlowestPxS), alignment.stray_share);
+    LearnSlope(unexpected_rate, feature);
     UpdateTemplate(alignment.events, motion, step_s, feature);
   } else {
     feature->flow = kSlowdown * start.flow;
@@ -227,6 +236,24 @@ void FeatureTracker::LearnDepths(double step_s) {
       4);
 }
 
+void FeatureTracker::WithdrawOdd() {
+  if (!ego_motion_.known()) return;
+  std::vector<TrackedFeature*> young;
+  std::vector<Oddity> oddities;
+  for (auto& feature : features_) {
+    if (feature.judged || feature.oddity.frames() < kYouth) continue;
+    feature.judged = true;
+    young.push_back(&feature);
+    oddities.push_back(feature.oddity.Of(ego_motion_.motion().Away(ego_motion_.lens().At(feature.position))));
+  }
+  const std::vector<bool> are_odd = oddity_judge_.AreOdd(oddities);
+  for (std::size_t i = 0; i < young.size(); ++i) {
+    if (!are_odd[i]) continue;
+    young[i]->withdrawn = true;
+    withdrawn_.push_back(young[i]->id);
+  }
+}
+
 std::vector<DepthSample> FeatureTracker::Depths() const {
   std::vector<DepthSample> depths;
   for (const auto& feature : features_) depths.push_back({feature.position, feature.inverse_depth});
@@ -254,6 +281,7 @@ bool FeatureTracker::Fit(const TrackedFeature& feature, bool coarse_first, Featu
   };
   if (coarse_first) align(options_.coarse_sigma_px, kCoarseIterations, false);
   const AlignmentQuality quality = align(options_.fine_sigma_px, options_.iterations, true);
+  alignment->stray_share = 1.0 - quality.inlier_share;
   const double scale = feature.scale * std::sqrt(std::abs(motion.linear.determinant()));
   return quality.inlier_share >= options_.fewest_inliers && quality.residual_px <= options_.largest_residual_px &&
          motion.offset.norm() <= options_.largest_jump_px && scale < options_.largest_scale &&

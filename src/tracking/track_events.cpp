@@ -4,6 +4,7 @@
 #include <future>
 #include <opencv2/core/utility.hpp>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "evo/core/error.hpp"
 #include "evo/tracking/camera_shake.hpp"
@@ -14,6 +15,11 @@ namespace evo {
 namespace {
 
 constexpr double kBetweenDropsS = 0.08;  // looking at every tile costs more than some frames' events more do
+
+void DropWithdrawn(const std::vector<std::int64_t>& ids, Tracks* tracks) {
+  const std::unordered_set<std::int64_t> withdrawn(ids.begin(), ids.end());
+  std::erase_if(*tracks, [&](const auto& observation) { return withdrawn.contains(observation.id); });
+}
 
 void DropLoneObservations(Tracks* tracks) {
   std::unordered_map<std::int64_t, int> count;
@@ -89,6 +95,7 @@ TrackingResult TrackEvents(EventReader* reader, const Camera& camera, const Trac
         "the events span less than two event frames; choose a longer interval or a smaller tracker.frame_interval_s");
   }
   if (options.restore_shake) RestoreShake(camera, windows, pool, &result.tracks);
+  DropWithdrawn(tracker->Withdrawn(), &result.tracks);
   DropLoneObservations(&result.tracks);
   return result;
 }

@@ -57,6 +57,8 @@ void Register(Parameters& parameters, TrackerOptions& o) {
   parameters.Add("tracker.corner_window_motion_px", &o.corner_window_motion_px, 0.5, 20.0, "in the corner image (px)");
   parameters.Add("tracker.uninformative_share", &o.uninformative_share, 0.0, 0.95,
                  "share of the new features that is refused: those whose events tell least of their position");
+  parameters.Add("tracker.odd_share", &o.odd_share, 0.0, 0.5,
+                 "share of the features that is withdrawn when young: those least like points at rest");
   parameters.Add("tracker.shortest_life_s", &o.shortest_life_s, 0.0, 10.0,
                  "a corner that leaves the image sooner is not taken (s)");
   parameters.Add("tracker.fewest_cells", &o.fewest_cells, 0.0, 1000.0, "that a template's events fill (px)");

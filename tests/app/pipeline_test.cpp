@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/evo_run.hpp"
+#include "evo/io/tracks.hpp"
 
 namespace evo {
 namespace {
@@ -111,6 +112,29 @@ TEST_F(PipelineTest, RunKeepsItsQuality) {
 TEST_F(PipelineTest, RunKeepsItsQualityAtNight) {
   ASSERT_EQ(Run("run --no-plots --events " + Quote(BundledSequence("night")) + To("result")), 0) << err;
   ExpectQuality("result", {.path_m = 7.48, .origin_scale_percent = 0.8, .sim3_percent = 0.25, .lifetime_frames = 14.0});
+}
+
+TEST_F(PipelineTest, OddTracksAreWithdrawnWithAllThatWasSeenOfThem) {
+  const std::string alike = "track " + Blind() + "-q --set tracker.restore_shake=false";  // which all tracks share
+  ASSERT_EQ(Run(alike + " --set tracker.odd_share=0" + To("all")), 0) << err;
+  ASSERT_EQ(Run(alike + " --set tracker.odd_share=0.2" + To("kept")), 0) << err;
+  std::map<std::int64_t, Tracks> all, kept;
+  for (const auto& observation : ReadTracks(folder / "all" / "tracks.txt")) all[observation.id].push_back(observation);
+  for (const auto& observation : ReadTracks(folder / "kept" / "tracks.txt"))
+    kept[observation.id].push_back(observation);
+  std::size_t withdrawn = 0;
+  for (const auto& [id, track] : all) {
+    if (!kept.contains(id)) {
+      ++withdrawn;
+      EXPECT_GT(track.size(), 10u) << "too young to be judged";
+      continue;
+    }
+    ASSERT_EQ(kept[id].size(), track.size()) << id;
+    for (std::size_t i = 0; i < track.size(); ++i) EXPECT_EQ(kept[id][i].x, track[i].x);
+  }
+  EXPECT_EQ(kept.size() + withdrawn, all.size());
+  EXPECT_GT(withdrawn, 10u);
+  EXPECT_LT(withdrawn, all.size() / 4);
 }
 
 TEST_F(PipelineTest, RunKeepsItsQualityInTheHand) {

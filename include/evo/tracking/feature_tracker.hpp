@@ -15,6 +15,7 @@
 #include "evo/tracking/epipolar_filter.hpp"
 #include "evo/tracking/flow_field.hpp"
 #include "evo/tracking/jolt.hpp"
+#include "evo/tracking/oddity.hpp"
 #include "evo/tracking/tracker.hpp"
 
 namespace evo {
@@ -33,6 +34,9 @@ struct TrackedFeature {
   DensityMap events;                                      ///< the template
   double information = 0.0;                               ///< see AssociationField, in the worst direction, at birth
   int frames = 1;                                         ///< lifetime so far
+  OddityMeans oddity = {};                                ///< over its life so far
+  bool judged = false;                                    ///< whether it is odd
+  bool withdrawn = false;                                 ///< found to be odd: followed, but no longer reported
   TimeNs half_window = 0;                                 ///< of the events behind the position
   Eigen::Vector2d told_flow = Eigen::Vector2d::Zero();    ///< px/s, what those events alone tell
 };
@@ -51,6 +55,7 @@ struct FeatureAlignment {
   PatchMotion motion;                       ///< aligned
   TimeNs half_window = 0;
   LocalEvents events;
+  double stray_share = 0.0;  ///< of the events, see AlignmentQuality
 
   /// Where the feature is now, px.
   Eigen::Vector2d Landed() const { return state == State::kFound ? position + motion.offset : position; }
@@ -68,6 +73,7 @@ class FeatureTracker : public Tracker {
   Tracks Observations() const override;
   std::vector<ObservedWindow> Windows() const override;
   bool detected() const override { return detected_; }
+  std::vector<std::int64_t> Withdrawn() const override { return withdrawn_; }
 
  private:
   std::vector<FlowSample> Flows() const;
@@ -92,6 +98,8 @@ class FeatureTracker : public Tracker {
   /// Of all features, and from them the slopes of the planes that they lie on.
   void LearnDepths(double step_s);
   std::vector<DepthSample> Depths() const;
+  /// Of the features that have just grown old enough to be judged.
+  void WithdrawOdd();
   /// `unexpected_rate`: by how much the patch changed faster than its plane's slope made expect, 1/s.
   void LearnSlope(const Eigen::Matrix2d& unexpected_rate, TrackedFeature* feature) const;
   void UpdateTemplate(const LocalEvents& events, const PatchMotion& motion, double step_s,
@@ -99,7 +107,8 @@ class FeatureTracker : public Tracker {
 
   // In feature_birth.cpp.
   void Refill(const EventHistory& history, TimeNs t);
-  /// What a new feature must tell of its position: more than that share of the last ones, the refused ones among them.
+  /// How much a new feature must tell of its position: of the last ones, refused ones among them, the
+  /// `uninformative_share` tells less.
   double LeastInformation(const std::vector<TrackedFeature>& born);
   std::optional<TrackedFeature> Birth(const EventHistory& history, TimeNs t, const Eigen::Vector2d& position,
                                       const std::vector<DepthSample>& depths) const;
@@ -113,6 +122,8 @@ class FeatureTracker : public Tracker {
   EpipolarFilter epipolar_filter_;
   FlowField flow_field_;
   RefillPolicy refill_;
+  OddityJudge oddity_judge_;
+  std::vector<std::int64_t> withdrawn_;
   std::deque<double> informations_;  // of the last features at birth, the refused ones among them
   std::vector<TrackedFeature> features_;
   std::vector<FeatureAlignment> alignments_;  // of the features, in their order; some more are kept for their memory

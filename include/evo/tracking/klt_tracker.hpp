@@ -22,6 +22,7 @@ class KltTracker : public Tracker {
   TimeNs before() const override { return FromSeconds(options_.klt.longest_window_s); }
   TimeNs after() const override { return 0; }
   Tracks Observations() const override;
+  std::vector<std::int64_t> Withdrawn() const override { return {}; }
   std::vector<ObservedWindow> Windows() const override { return std::vector<ObservedWindow>(features_.size()); }
   bool detected() const override { return detected_; }
 

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "evo/core/parallel.hpp"
 #include "evo/events/event_history.hpp"
@@ -28,6 +30,8 @@ class Tracker {
   virtual Tracks Observations() const = 0;
   /// What each of them comes from; instants where the window is not around the stamp.
   virtual std::vector<ObservedWindow> Windows() const = 0;
+  /// The ids of all features so far whose observations have turned out to be worth nothing.
+  virtual std::vector<std::int64_t> Withdrawn() const = 0;
   /// Whether the last frame was a key frame, where new features were detected.
   virtual bool detected() const = 0;
 };

@@ -60,11 +60,14 @@ struct TrackerOptions {
   // Corners.
   double corner_spacing_px = 10.0;  ///< smallest distance between two features when one is born
   double corner_closest_px = 6.0;   ///< the same where that one leaves room for too few
-  double corner_share = 0.02;       ///< weakest corner accepted, as a share of a strong one (95th percentile)
+  double corner_share = 0.05;       ///< weakest corner accepted, as a share of a strong one (95th percentile)
   double corner_window_motion_px = 3.0;
-  /// Of an event about the position of a new feature, as a share of the mean over all that were tried: its pattern must
-  /// neither slide nor blur. About half of them are refused at 1.
+  /// Share of the new features that is refused: those whose events tell least of their position, since their pattern
+  /// may slide, is blurred or is not the same in both halves of the window.
   double uninformative_share = 0.55;
+  /// Share of the features that is withdrawn, with all that was seen of them, once they are old enough to be judged:
+  /// the least like points at rest, see OddityJudge.
+  double odd_share = 0.03;
   double shortest_life_s = 0.12;  ///< a corner that leaves the image sooner than this is not taken
   double fewest_cells = 8.0;      ///< px that a template's events fill: a hot pixel fills one
 
