@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <tuple>
+#include <utility>
 
 #include "evo/tracking/harris.hpp"
 
@@ -100,9 +102,12 @@ void MarkMaxima(const float* above, const float* row, const float* below, int be
   }
 }
 
-/// All local maxima, strongest first, but for those weaker than `corner_share` of a strong one.
-std::vector<Corner> StrongMaxima(const Harris& harris, int width, int height, const TrackerOptions& options,
-                                 ThreadPool* pool) {
+struct Corners {
+  std::vector<Corner> all;  ///< strongest first
+  std::size_t strong = 0;   ///< so many reach the usual share of a strong one, the rest the smaller share
+};
+
+Corners FindCorners(const Harris& harris, int width, int height, const TrackerOptions& options, ThreadPool* pool) {
   const int border = static_cast<int>(std::ceil(options.border_px)) + 2;
   const int rows = std::max(0, height - 2 * border);
   std::array<std::vector<Corner>, kStripes> stripes;
@@ -119,17 +124,20 @@ std::vector<Corner> StrongMaxima(const Harris& harris, int width, int height, co
   });
   std::vector<Corner> corners;
   for (const auto& stripe : stripes) corners.insert(corners.end(), stripe.begin(), stripe.end());
-  if (corners.empty()) return corners;
+  if (corners.empty()) return {};
   const auto strong =
       corners.begin() + static_cast<std::ptrdiff_t>((1.0 - kStrongCorner) * static_cast<double>(corners.size()));
   std::ranges::nth_element(corners, strong, std::ranges::greater(), &Corner::strength);
-  const auto weakest = static_cast<float>(options.corner_share * strong->strength);
+  const auto usual = static_cast<float>(options.corner_share * strong->strength);
+  const auto weakest = std::min(usual, static_cast<float>(options.corner_weakest_share * strong->strength));
   std::erase_if(corners, [&](const Corner& corner) { return corner.strength < weakest; });
   // A total order, so that equal responses do not depend on the sort.
   std::ranges::sort(corners, [](const Corner& a, const Corner& b) {
     return std::tuple(-a.strength, a.y, a.x) < std::tuple(-b.strength, b.y, b.x);
   });
-  return corners;
+  const auto end = std::ranges::find_if(corners, [&](const Corner& corner) { return corner.strength < usual; });
+  const auto strong_ones = static_cast<std::size_t>(end - corners.begin());
+  return {std::move(corners), strong_ones};
 }
 
 /// Events within `radius` px of (x, y), in x and in y.
@@ -160,7 +168,7 @@ class CornerSelection {
   /// until `count` are found. Fills the emptiest buckets first: round n accepts only corners whose bucket holds fewer
   /// than n features.
   template <typename Fits>
-  void Add(const std::vector<Corner>& corners, std::size_t count, double spacing_px, const Fits& fits) {
+  void Add(std::span<const Corner> corners, std::size_t count, double spacing_px, const Fits& fits) {
     const double spacing2 = spacing_px * spacing_px;
     const int most = kBucketPx * kBucketPx / std::max(1, static_cast<int>(spacing2)) + 1;
     std::vector<char> used(corners.size(), 0);
@@ -219,16 +227,18 @@ std::vector<Eigen::Vector2d> DetectCorners(const cv::Mat& image, const std::vect
                                            const std::function<bool(const Eigen::Vector2d&)>& is_wanted) {
   thread_local Harris harris;
   harris.Respond(image, pool);
-  const std::vector<Corner> corners = StrongMaxima(harris, image.cols, image.rows, options, pool);
+  const Corners corners = FindCorners(harris, image.cols, image.rows, options, pool);
   // Asked only of corners that are tried: most never are.
   const auto fits = [&](const Corner& corner) {
     return is_wanted({corner.x, corner.y}) &&
            EventsAround(image, corner.x, corner.y, options.patch_radius_px) >= fewest_events;
   };
   CornerSelection selection(image.cols, image.rows, taken);
-  for (const double spacing_px : {options.corner_spacing_px, options.corner_closest_px}) {
-    selection.Add(corners, static_cast<std::size_t>(std::max(count, 0)), spacing_px, fits);
-  }
+  const std::span<const Corner> all(corners.all), strong = all.first(corners.strong);
+  const auto wanted = static_cast<std::size_t>(std::max(count, 0));
+  selection.Add(strong, wanted, options.corner_spacing_px, fits);
+  selection.Add(strong, wanted, options.corner_closest_px, fits);
+  selection.Add(all, wanted, options.corner_closest_px, fits);
   return selection.found();
 }
 

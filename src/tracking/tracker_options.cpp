@@ -54,6 +54,8 @@ void Register(Parameters& parameters, TrackerOptions& o) {
   parameters.Add("tracker.corner_closest_px", &o.corner_closest_px, 1.0, 100.0,
                  "the same where that leaves room for too few (px)");
   parameters.Add("tracker.corner_share", &o.corner_share, 0.0, 1.0, "weakest corner as a share of a strong one");
+  parameters.Add("tracker.corner_weakest_share", &o.corner_weakest_share, 0.0, 1.0,
+                 "the same where that leaves too few");
   parameters.Add("tracker.corner_window_motion_px", &o.corner_window_motion_px, 0.5, 20.0, "in the corner image (px)");
   parameters.Add("tracker.uninformative_share", &o.uninformative_share, 0.0, 0.95,
                  "share of the new features that is refused: those whose events tell least of their position");

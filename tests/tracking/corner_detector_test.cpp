@@ -100,6 +100,23 @@ TEST(DetectCorners, LeavesOutPatchesWithTooFewEvents) {
   for (const auto& corner : corners) EXPECT_GE(corner.x(), 70.0);
 }
 
+TEST(DetectCorners, TakesFaintOnesOnlyWhereStrongOnesAreTooFew) {
+  cv::Mat image = Squares();
+  image(cv::Rect(80, 0, 80, 120)) *= 0.4f;  // on the right
+  const auto is_faint = [](const Vector2d& corner) { return corner.x() > 78.0; };
+  TrackerOptions options;
+  options.corner_share = 0.5;
+  options.corner_weakest_share = 0.5;
+  const auto strong = Detect(image, {}, 100, options);
+  EXPECT_GE(strong.size(), 15u);
+  EXPECT_EQ(std::ranges::count_if(strong, is_faint), 0);
+  options.corner_weakest_share = 0.001;
+  EXPECT_EQ(Detect(image, {}, static_cast<int>(strong.size()), options), strong);
+  const auto all = Detect(image, {}, 100, options);
+  EXPECT_GE(std::ranges::count_if(all, is_faint), 15);
+  EXPECT_EQ(std::vector<Vector2d>(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(strong.size())), strong);
+}
+
 TEST(DetectCorners, FindsTheSameWithAnyNumberOfThreads) {
   EXPECT_EQ(Detect(Squares(), {}, 100, {}, 1), Detect(Squares(), {}, 100, {}, 3));
 }

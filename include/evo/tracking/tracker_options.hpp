@@ -58,9 +58,10 @@ struct TrackerOptions {
   double border_px = 3.0;            ///< a feature closer than this to the edge of the sensor is given up
 
   // Corners.
-  double corner_spacing_px = 10.0;  ///< smallest distance between two features when one is born
-  double corner_closest_px = 6.0;   ///< the same where that one leaves room for too few
-  double corner_share = 0.05;       ///< weakest corner accepted, as a share of a strong one (95th percentile)
+  double corner_spacing_px = 10.0;     ///< smallest distance between two features when one is born
+  double corner_closest_px = 6.0;      ///< the same where that one leaves room for too few
+  double corner_share = 0.05;          ///< weakest corner accepted, as a share of a strong one (95th percentile)
+  double corner_weakest_share = 0.02;  ///< the same where that leaves too few
   double corner_window_motion_px = 3.0;
   /// Share of the new features that is refused: those whose events tell least of their position, since their pattern
   /// may slide, is blurred or is not the same in both halves of the window.
