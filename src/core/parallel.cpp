@@ -66,11 +66,9 @@ void ThreadPool::Drain(Job& job) {
 
 void ThreadPool::RunWorker() {
   std::size_t seen = 0;
-  std::unique_lock lock(mutex_);
   while (true) {
-    lock.unlock();
     WatchFor([&] { return generation_ != seen; });
-    lock.lock();
+    std::unique_lock lock(mutex_);
     wake_.wait(lock, [&] { return stop_ || (job_ && generation_ != seen); });
     if (stop_) return;
     seen = generation_;

@@ -95,18 +95,16 @@ class DepthOracle {
     return moves;
   }
 
-  /// The points on the ray of `observation` at the depths of the other surfaces around the place of a point of it.
-  std::vector<Eigen::Vector3d> LocateBeside(const TrackObservation& observation, const SE3& T_cam_world,
-                                            const Eigen::Vector3d& position_world, const DepthView& view) const {
-    const auto x = camera_.Undistort({observation.x, observation.y});
-    if (!x) return {};
-    const SE3 T_world_cam = T_cam_world.Inverse();
-    const SE3 T_map_cam = view.T_cam_world * T_world_cam;
-    const Eigen::Vector3d ray = T_map_cam.rotation() * x->homogeneous();
+  /// The points on the ray from a camera through a point, at the depths of the other surfaces around its place.
+  std::vector<Eigen::Vector3d> LocateBeside(const Eigen::Vector3d& position_world, const SE3& T_cam_world,
+                                            const DepthView& view) const {
+    const Eigen::Vector3d centre = T_cam_world.Inverse().translation();
+    const double from = (view.T_cam_world * centre).z();
+    const double to = (view.T_cam_world * position_world).z();
     std::vector<Eigen::Vector3d> points;
     for (const double depth : OtherDepths(position_world, view)) {
-      const double z = (depth - T_map_cam.translation().z()) / ray.z();
-      if (z > 0.0) points.push_back(T_world_cam * (z * x->homogeneous()));
+      const double along = (depth - from) / (to - from);
+      if (along > 0.0) points.push_back(centre + along * (position_world - centre));
     }
     return points;
   }
@@ -240,7 +238,7 @@ class PointFollower {
       }
       result.verdict = TrackVerdict::kJudged;
       points_.push_back({track, std::nullopt, *position, first.t});
-      for (const auto& other : oracle_.LocateBeside(first, *T_cam_world, *position, view)) {
+      for (const auto& other : oracle_.LocateBeside(*position, *T_cam_world, view)) {
         points_.push_back({track, result.beside.size(), other, first.t});
         result.beside.emplace_back(tracks_[track].observations.size());
       }

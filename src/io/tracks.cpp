@@ -70,7 +70,7 @@ Tracks Unique(const TextLines& lines, const std::vector<Row>& rows, bool keep_la
   return tracks;
 }
 
-/// Some times as fast as printf.
+/// Several times faster than printf.
 void AppendPixel(double px, std::string* line) {
   std::array<char, 32> text;  // fits any position that is written
   const auto end = std::to_chars(text.data(), text.data() + text.size(), px, std::chars_format::fixed, 4).ptr;

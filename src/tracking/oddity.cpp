@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "evo/core/median.hpp"
 
@@ -31,7 +32,8 @@ std::vector<bool> OddityJudge::AreOdd(const std::vector<Oddity>& young) {
   last_.insert(last_.end(), young.begin(), young.end());
   while (last_.size() > std::max(kRemembered, young.size())) last_.pop_front();
   std::vector<bool> are_odd(young.size(), false);
-  if (young.empty() || last_.size() < kFewest) return are_odd;
+  const auto odd = static_cast<std::ptrdiff_t>(odd_share_ * static_cast<double>(last_.size()));
+  if (young.empty() || last_.size() < kFewest || odd == 0) return are_odd;
 
   std::array<double, 3> usual{};
   for (std::size_t k = 0; k < usual.size(); ++k) {
@@ -46,9 +48,7 @@ std::vector<bool> OddityJudge::AreOdd(const std::vector<Oddity>& young) {
     sums.push_back(sum);
   }
   const std::vector<double> of_young(sums.end() - static_cast<std::ptrdiff_t>(young.size()), sums.end());
-  const auto odd = static_cast<std::size_t>(odd_share_ * static_cast<double>(sums.size()));
-  if (odd == 0) return are_odd;
-  const auto least = sums.end() - static_cast<std::ptrdiff_t>(odd);
+  const auto least = sums.end() - odd;
   std::ranges::nth_element(sums, least);
   for (std::size_t i = 0; i < young.size(); ++i) are_odd[i] = of_young[i] >= *least;
   return are_odd;
