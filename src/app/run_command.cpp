@@ -95,10 +95,10 @@ void RunAll(const RunArguments& arguments, const std::vector<std::string>& comma
     RemoveEvaluationResults(out);
   }
 
-  const TrackingOutcome tracking = RunTrackingStage(&context, &recording);
+  Tracks tracks;
+  const TrackingOutcome tracking = RunTrackingStage(&context, &recording, &tracks);
   std::cout << FormatTracking(tracking) << std::flush;
-  const OdometryResult odometry =
-      RunOdometryStage(&context, tracking.result.tracks, out / "tracks.txt", recording.camera);
+  const OdometryResult odometry = RunOdometryStage(&context, tracks, out / "tracks.txt", recording.camera);
   std::cout << FormatOdometry(odometry) << FormatSpeed(context.record.manifest, context.pool.size()) << std::flush;
   if (truth) {
     RunEvaluationStage(&context, *truth, odometry.trajectory, odometry.covariances, tracking.result.frames, alignments,

@@ -3,12 +3,13 @@
 #include <spdlog/spdlog.h>
 
 #include <optional>
-#include <set>
+#include <span>
 
 #include "app/error_place.hpp"
 #include "app/evaluation_results.hpp"
 #include "app/event_drawing.hpp"
 #include "app/output_folder.hpp"
+#include "app/track_results.hpp"
 #include "evo/core/error.hpp"
 #include "evo/core/format.hpp"
 #include "evo/core/output_file.hpp"
@@ -43,17 +44,12 @@ DrawingSchedule ScheduleDrawings(const StageContext& context, const Recording& r
           std::nullopt};
 }
 
-std::size_t CountIds(const Tracks& tracks) {
-  std::set<std::int64_t> ids;
-  for (const auto& observation : tracks) ids.insert(observation.id);
-  return ids.size();
-}
-
-void DrawTrackFigures(const std::filesystem::path& folder, const TrackingOutcome& outcome) {
+void DrawTrackFigures(const std::filesystem::path& folder, const LifetimeStatistics& lifetimes,
+                      std::span<const LiveFeatures> live) {
   Gnuplot gnuplot(folder);
-  gnuplot.Draw("lifetime", LifetimeFigure("lifetime", outcome.lifetimes));
-  gnuplot.Draw("lifetime_seconds", LifetimeSecondsFigure("lifetime_seconds", outcome.lifetimes));
-  gnuplot.Draw("live_features", LiveFeaturesFigure("live_features", outcome.result.tracks, outcome.result.frames));
+  gnuplot.Draw("lifetime", LifetimeFigure("lifetime", lifetimes));
+  gnuplot.Draw("lifetime_seconds", LifetimeSecondsFigure("lifetime_seconds", lifetimes));
+  gnuplot.Draw("live_features", LiveFeaturesFigure("live_features", live));
 }
 
 std::string FormatGroundScale(const GroundScale& scale) {
@@ -108,38 +104,42 @@ void RemoveTrackingResults(const std::filesystem::path& folder) {
   RemoveDrawings(folder / "images");
 }
 
-TrackingOutcome RunTrackingStage(StageContext* context, Recording* recording) {
+TrackingOutcome RunTrackingStage(StageContext* context, Recording* recording, Tracks* kept) {
   const bool draw = context->options.draw_every_s > 0.0 || !context->options.no_plots;
   EventDrawing drawing(context->options.out / "images", recording->reader->first_stamp(),
                        draw ? ScheduleDrawings(*context, *recording) : DrawingSchedule());
+  TrackResults results(context->options.out / "tracks.txt", {DescribePositions(context->config.tracker)}, kept);
   TrackingOutcome outcome;
   outcome.result = context->record.Time("track", [&] {
     Progress progress("tracking", context->show_progress);
     return NamingPlace(recording->events.string(), [&] {
       return TrackEvents(
           recording->reader.get(), recording->camera, context->config.tracker, &context->pool,
+          [&](Tracks observations) { results.Take(std::move(observations)); },
           [&](double done) { progress.Update(done); },
           draw ? [&](const TrackingView& view) { drawing.Observe(view); } : std::function<void(const TrackingView&)>{});
     });
   });
-  RoundAsWritten(&outcome.result.tracks);  // the odometry from tracks.txt shall give the same trajectory
-  outcome.lifetimes = ComputeLifetimes(outcome.result.tracks, outcome.result.frames);
+  const auto& frames = outcome.result.frames;
+  outcome.lifetimes = results.Lifetimes(frames);
+  outcome.observations = results.observations();
   context->record.Time("write_tracks", [&] {
-    WriteTracks(context->options.out / "tracks.txt", outcome.result.tracks,
-                {DescribePositions(context->config.tracker)});
+    results.Commit();
     WriteLifetimes(context->options.out / "lifetime.csv", outcome.lifetimes);
     WriteText(context->options.out / "tables" / "lifetime.tex",
               LifetimeTable(SequenceName(recording->events), outcome.lifetimes));
-    if (!context->options.no_plots) DrawTrackFigures(context->options.out / "plots", outcome);
+    if (!context->options.no_plots) {
+      DrawTrackFigures(context->options.out / "plots", outcome.lifetimes, results.Live(frames));
+    }
   });
-  const auto& frames = outcome.result.frames;
   context->record.manifest.recorded_s = ToSeconds(frames.back() - frames.front());
   context->record.AddCount("threads", static_cast<std::size_t>(context->pool.size()));
   context->record.AddCount("events", outcome.result.events);
-  context->record.AddCount("event_frames", outcome.result.frames.size());
+  context->record.AddCount("event_frames", frames.size());
   context->record.AddCount("event_key_frames", outcome.result.key_frames);
-  context->record.AddCount("tracks", CountIds(outcome.result.tracks));
-  context->record.AddCount("track_observations", outcome.result.tracks.size());
+  context->record.AddCount("tracks",
+                           static_cast<std::size_t>(outcome.lifetimes.tracks + outcome.lifetimes.tracks_too_short));
+  context->record.AddCount("track_observations", outcome.observations);
   return outcome;
 }
 
@@ -190,8 +190,7 @@ OdometryResult RunOdometryStage(StageContext* context, const Tracks& tracks, con
 std::string FormatTracking(const TrackingOutcome& outcome) {
   const auto frames = std::max<std::size_t>(1, outcome.result.frames.size());
   return Format("tracking   %zu events, %zu event frames, %.0f live features\n", outcome.result.events,
-                outcome.result.frames.size(),
-                static_cast<double>(outcome.result.tracks.size()) / static_cast<double>(frames)) +
+                outcome.result.frames.size(), static_cast<double>(outcome.observations) / static_cast<double>(frames)) +
          FormatLifetimes(outcome.lifetimes);
 }
 

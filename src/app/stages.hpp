@@ -49,6 +49,7 @@ struct StageContext {
 struct TrackingOutcome {
   TrackingResult result;
   LifetimeStatistics lifetimes;
+  std::size_t observations = 0;
 };
 
 /// Files that the tracking stage leaves in the output folder.
@@ -56,8 +57,9 @@ std::vector<std::string> TrackingResultNames();
 /// Removes those files, the plots and the drawings from `folder`, and manifest.json, which tells of them.
 void RemoveTrackingResults(const std::filesystem::path& folder);
 /// Tracks the recording and writes tracks.txt, lifetime.csv, tables/lifetime.tex, the plots lifetime, lifetime_seconds
-/// and live_features and, in images/, what EventDrawing draws. Throws Error.
-TrackingOutcome RunTrackingStage(StageContext* context, Recording* recording);
+/// and live_features and, in images/, what EventDrawing draws. `kept`: where the tracks go, too, if anywhere; they are
+/// not in memory otherwise. Throws Error.
+TrackingOutcome RunTrackingStage(StageContext* context, Recording* recording, Tracks* kept = nullptr);
 
 std::vector<std::string> OdometryResultNames();
 void RemoveOdometryResults(const std::filesystem::path& folder);

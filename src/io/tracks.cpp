@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "evo/core/error.hpp"
-#include "evo/core/output_file.hpp"
 #include "evo/io/file_kind.hpp"
 #include "io/text_lines.hpp"
 
@@ -105,14 +104,17 @@ void RoundAsWritten(Tracks* tracks) {
   }
 }
 
-void WriteTracks(const std::filesystem::path& path, const Tracks& tracks, const std::vector<std::string>& comments) {
-  OutputFile file(path);
-  file.stream() << "# id timestamp x y\n";
-  for (const auto& comment : comments) file.stream() << "# " << comment << '\n';
+TrackWriter::TrackWriter(std::filesystem::path path, const std::vector<std::string>& comments)
+    : path_(std::move(path)), file_(path_) {
+  file_.stream() << "# id timestamp x y\n";
+  for (const auto& comment : comments) file_.stream() << "# " << comment << '\n';
+}
+
+void TrackWriter::Write(std::span<const TrackObservation> observations) {
   std::string line;
-  for (const auto& observation : tracks) {
+  for (const auto& observation : observations) {
     if (!(std::abs(observation.x) < 1e9 && std::abs(observation.y) < 1e9)) {
-      throw Error(ErrorKind::kInput, path.string() + ": the position of track " + std::to_string(observation.id) +
+      throw Error(ErrorKind::kInput, path_.string() + ": the position of track " + std::to_string(observation.id) +
                                          " at " + FormatTime(observation.t) + " s is not finite");
     }
     line = std::to_string(observation.id);
@@ -120,9 +122,15 @@ void WriteTracks(const std::filesystem::path& path, const Tracks& tracks, const 
     line += FormatTime(observation.t);
     AppendPixel(observation.x, &line);
     AppendPixel(observation.y, &line);
-    file.stream() << line << '\n';
+    file_.stream() << line << '\n';
   }
-  file.Commit();
+  file_.Check();
+}
+
+void WriteTracks(const std::filesystem::path& path, const Tracks& tracks, const std::vector<std::string>& comments) {
+  TrackWriter writer(path, comments);
+  writer.Write(tracks);
+  writer.Commit();
 }
 
 }  // namespace evo

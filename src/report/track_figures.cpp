@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <map>
 #include <sstream>
 
 #include "evo/report/figures.hpp"
@@ -58,23 +57,19 @@ Figure LifetimeSecondsFigure(const std::string& name, const LifetimeStatistics& 
                                              "s");
 }
 
-Figure LiveFeaturesFigure(const std::string& name, const Tracks& tracks, std::span<const TimeNs> frame_stamps) {
-  std::map<TimeNs, std::int64_t> live;
-  for (const TimeNs t : frame_stamps) live[t] = 0;
-  for (const auto& observation : tracks) {
-    if (const auto frame = live.find(observation.t); frame != live.end()) ++frame->second;
-  }
+Figure LiveFeaturesFigure(const std::string& name, std::span<const LiveFeatures> frames) {
   std::ostringstream data;
   data << "# seconds since the first frame, live features\n";
   double mean = 0.0;
   Range time{0.0, 1e-3};
   Range features{0.0, 1.0};
-  for (const auto& [t, count] : live) {
-    const double seconds = ToSeconds(t - live.begin()->first);
-    AppendRow(data, {seconds, static_cast<double>(count)});
-    mean += static_cast<double>(count) / static_cast<double>(live.size());
+  for (const auto& frame : frames) {
+    const double seconds = ToSeconds(frame.t - frames.front().t);
+    const auto live = static_cast<double>(frame.features);
+    AppendRow(data, {seconds, live});
+    mean += live / static_cast<double>(frames.size());
     time.Add(seconds);
-    features.Add(static_cast<double>(count));
+    features.Add(live);
   }
   features.high *= 1.05;
 
@@ -85,7 +80,7 @@ Figure LiveFeaturesFigure(const std::string& name, const Tracks& tracks, std::sp
          << "set ylabel 'live features'\n"
          << "plot " << Number(mean) << " with " << kMeanStyle << " '" << kVermilion << "' title 'mean "
          << Print("%.1f", mean) << "', \\\n  "
-         << Curve{"'" + name + ".dat'", live.size(), "1:2", std::string("linewidth 2 linecolor '") + kBlue + "'",
+         << Curve{"'" + name + ".dat'", frames.size(), "1:2", std::string("linewidth 2 linecolor '") + kBlue + "'",
                   "features seen in the event frame"}
          << "\n";
   return {data.str(), script.str()};

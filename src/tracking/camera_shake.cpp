@@ -7,8 +7,6 @@
 #include <numeric>
 #include <vector>
 
-#include "evo/tracking/lens_grid.hpp"
-
 namespace evo {
 
 namespace {
@@ -26,9 +24,6 @@ constexpr int kSpan = kWeights + 6;         // knots that a difference over four
 constexpr double kUsualDifferencePx = 1.0;  // beyond this a difference is taken for an outlier
 constexpr double kShakePx = 0.5;            // usual size of the shake
 constexpr int kRounds = 2;
-// Stretches that are solved each by itself, with a margin on either side.
-constexpr TimeNs kStretch = 5 * kNsPerSecond;
-constexpr TimeNs kMargin = kNsPerSecond / 2;
 
 using ImageJacobian = Eigen::Matrix<double, 2, 3>;
 
@@ -249,30 +244,17 @@ class ShakeEstimator {
 
 }  // namespace
 
-void RestoreShake(const Camera& camera, std::span<const ObservedWindow> windows, ThreadPool* pool, Tracks* tracks) {
+void RestoreShake(const Camera& camera, const LensGrid& lens, std::span<const TrackObservation> seen,
+                  std::span<const ObservedWindow> windows, std::size_t first, std::span<TrackObservation> restored) {
+  if (restored.empty()) return;
   if (std::ranges::all_of(windows, [](const ObservedWindow& window) { return window.half_s == 0.0f; })) return;
-  const LensGrid lens(camera);
-  const Tracks smoothed = *tracks;
-  const auto index_of = [&](TimeNs t) {
-    return static_cast<std::size_t>(std::ranges::lower_bound(smoothed, t, {}, &TrackObservation::t) - smoothed.begin());
-  };
-  const TimeNs start = smoothed.front().t;
-  const auto stretches = static_cast<std::size_t>((smoothed.back().t - start) / kStretch + 1);
-  pool->ForEach(stretches, [&](std::size_t stretch) {
-    const TimeNs from = start + static_cast<TimeNs>(stretch) * kStretch;
-    const std::size_t first = index_of(from - kMargin);
-    const std::size_t begin = index_of(from);
-    const std::size_t end = index_of(from + kStretch);
-    if (begin == end) return;
-    const std::size_t count = index_of(from + kStretch + kMargin) - first;
-    const ShakeEstimator estimator(lens, std::span(smoothed).subspan(first, count), windows.subspan(first, count));
-    for (std::size_t i = begin; i < end; ++i) {
-      const Eigen::Vector2d restored = estimator.Restored(i - first);
-      if (!camera.Contains(restored)) continue;
-      (*tracks)[i].x = restored.x();
-      (*tracks)[i].y = restored.y();
-    }
-  });
+  const ShakeEstimator estimator(lens, seen, windows);
+  for (std::size_t i = 0; i < restored.size(); ++i) {
+    const Eigen::Vector2d position = estimator.Restored(first + i);
+    if (!camera.Contains(position)) continue;
+    restored[i].x = position.x();
+    restored[i].y = position.y();
+  }
 }
 
 }  // namespace evo

@@ -237,11 +237,12 @@ void FeatureTracker::LearnDepths(double step_s) {
 }
 
 void FeatureTracker::WithdrawOdd() {
+  withdrawn_.clear();
   if (!ego_motion_.known()) return;
   std::vector<TrackedFeature*> young;
   std::vector<Oddity> oddities;
   for (auto& feature : features_) {
-    if (feature.judged || feature.oddity.frames() < kYouth) continue;
+    if (feature.judged || feature.frames > kOldestWithdrawn || feature.oddity.frames() < kYouth) continue;
     feature.judged = true;
     young.push_back(&feature);
     oddities.push_back(feature.oddity.Of(ego_motion_.motion().Away(ego_motion_.lens().At(feature.position))));

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
+#include <vector>
 
 namespace evo {
 
@@ -10,35 +10,43 @@ namespace {
 
 constexpr int kMostBins = 60;
 
-struct Lifetime {
-  int frames = 0;
-  TimeNs first = 0;
-  TimeNs last = 0;
-};
+template <typename Value>
+using Counted = std::map<Value, std::int64_t>;  // how many tracks have each value
 
-std::unordered_map<std::int64_t, Lifetime> CollectLifetimes(const Tracks& tracks) {
-  std::unordered_map<std::int64_t, Lifetime> lifetimes;
-  for (const auto& observation : tracks) {
-    Lifetime& lifetime = lifetimes[observation.id];
-    if (lifetime.frames++ == 0) lifetime.first = observation.t;
-    lifetime.last = observation.t;
-  }
-  return lifetimes;
+template <typename Value>
+std::int64_t Total(const Counted<Value>& values) {
+  std::int64_t total = 0;
+  for (const auto& [value, tracks] : values) total += tracks;
+  return total;
 }
 
-/// Sorts `values`, so that the sums do not depend on the order in which tracks are visited.
-LifetimeMoments ComputeMoments(std::vector<double> values) {
+/// The value of the track with that `rank` from 0 on.
+template <typename Value>
+Value Ranked(const Counted<Value>& values, std::int64_t rank) {
+  for (const auto& [value, tracks] : values) {
+    rank -= tracks;
+    if (rank < 0) return value;
+  }
+  return {};
+}
+
+/// `in_unit` turns a value into the unit of the moments.
+template <typename Value, typename InUnit>
+LifetimeMoments ComputeMoments(const Counted<Value>& values, const InUnit& in_unit) {
   if (values.empty()) return {};
-  std::ranges::sort(values);
-  const auto n = static_cast<double>(values.size());
+  const std::int64_t n = Total(values);
+  double sum = 0.0;
+  for (const auto& [value, tracks] : values) sum += static_cast<double>(tracks) * in_unit(value);
   LifetimeMoments moments;
-  for (const double value : values) moments.mean += value / n;
-  double variance = 0.0;
-  for (const double value : values) variance += (value - moments.mean) * (value - moments.mean) / n;
-  moments.standard_deviation = std::sqrt(variance);
-  const std::size_t middle = values.size() / 2;
-  moments.median = values.size() % 2 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-  moments.max = values.back();
+  moments.mean = sum / static_cast<double>(n);
+  double squares = 0.0;
+  for (const auto& [value, tracks] : values) {
+    const double away = in_unit(value) - moments.mean;
+    squares += static_cast<double>(tracks) * away * away;
+  }
+  moments.standard_deviation = std::sqrt(squares / static_cast<double>(n));
+  moments.median = 0.5 * (in_unit(Ranked(values, (n - 1) / 2)) + in_unit(Ranked(values, n / 2)));
+  moments.max = in_unit(values.rbegin()->first);
   return moments;
 }
 
@@ -51,14 +59,14 @@ std::int64_t BinWidth(std::int64_t span) {
   }
 }
 
-std::vector<LifetimeBin> ComputeHistogram(const std::vector<double>& frames) {
+std::vector<LifetimeBin> ComputeHistogram(const Counted<int>& frames) {
   if (frames.empty()) return {};
-  const int longest = static_cast<int>(std::ranges::max(frames));
+  const int longest = frames.rbegin()->first;
   const int width = static_cast<int>(BinWidth(longest - kFewestFrames + 1));
   std::vector<LifetimeBin> histogram;
   for (int low = kFewestFrames; low <= longest; low += width) histogram.push_back({low, low + width, 0});
-  for (const double lifetime : frames) {
-    ++histogram[static_cast<std::size_t>((static_cast<int>(lifetime) - kFewestFrames) / width)].tracks;
+  for (const auto& [lifetime, tracks] : frames) {
+    histogram[static_cast<std::size_t>((lifetime - kFewestFrames) / width)].tracks += tracks;
   }
   return histogram;
 }
@@ -72,43 +80,69 @@ TimeNs MedianInterval(std::span<const TimeNs> stamps) {
   return *middle;
 }
 
-std::vector<LifetimeSecondsBin> ComputeSecondsHistogram(const std::vector<TimeNs>& lifetimes, TimeNs interval) {
-  if (lifetimes.empty()) return {};
+std::vector<LifetimeSecondsBin> ComputeSecondsHistogram(const Counted<TimeNs>& durations, TimeNs interval) {
+  if (durations.empty()) return {};
   const TimeNs unit = std::max<TimeNs>(1, interval);
-  const TimeNs longest = std::ranges::max(lifetimes);
+  const TimeNs longest = durations.rbegin()->first;
   const TimeNs width = unit * BinWidth(longest / unit + 1);
   std::vector<LifetimeSecondsBin> histogram;
   for (TimeNs low = 0; low <= longest; low += width) histogram.push_back({ToSeconds(low), ToSeconds(low + width), 0});
-  for (const TimeNs lifetime : lifetimes) ++histogram[static_cast<std::size_t>(lifetime / width)].tracks;
+  for (const auto& [duration, tracks] : durations)
+    histogram[static_cast<std::size_t>(duration / width)].tracks += tracks;
   return histogram;
 }
 
 }  // namespace
 
-LifetimeStatistics ComputeLifetimes(const Tracks& tracks, std::span<const TimeNs> frame_stamps) {
+void LifetimeCounter::Counts::Add(const Lifetime& lifetime) {
+  if (lifetime.frames < kFewestFrames) {
+    ++too_short;
+    return;
+  }
+  ++frames[lifetime.frames];
+  ++durations[lifetime.last - lifetime.first];
+}
+
+void LifetimeCounter::Add(std::span<const TrackObservation> observations) {
+  for (const auto& observation : observations) {
+    Lifetime& lifetime = open_[observation.id];
+    if (lifetime.frames++ == 0) lifetime.first = observation.t;
+    lifetime.last = observation.t;
+  }
+}
+
+void LifetimeCounter::EndBefore(TimeNs t) {
+  std::erase_if(open_, [&](const auto& track) {
+    const bool is_over = track.second.last < t;
+    if (is_over) ended_.Add(track.second);
+    return is_over;
+  });
+}
+
+LifetimeStatistics LifetimeCounter::Statistics(std::span<const TimeNs> frame_stamps) const {
   LifetimeStatistics statistics;
   const TimeNs interval = MedianInterval(frame_stamps);
   statistics.frames = static_cast<std::int64_t>(frame_stamps.size());
   statistics.frame_interval_s = ToSeconds(interval);
-  std::vector<double> frames;
-  std::vector<double> seconds;
-  std::vector<TimeNs> nanoseconds;
-  for (const auto& [id, lifetime] : CollectLifetimes(tracks)) {
-    if (lifetime.frames < kFewestFrames) {
-      ++statistics.tracks_too_short;
-      continue;
-    }
-    frames.push_back(lifetime.frames);
-    nanoseconds.push_back(lifetime.last - lifetime.first);
-    seconds.push_back(ToSeconds(nanoseconds.back()));
-    if (!frame_stamps.empty() && lifetime.last >= frame_stamps.back()) ++statistics.tracks_cut_short;
+  Counts counts = ended_;
+  for (const auto& [id, lifetime] : open_) {
+    counts.Add(lifetime);
+    const bool is_cut_short = !frame_stamps.empty() && lifetime.last >= frame_stamps.back();
+    if (is_cut_short && lifetime.frames >= kFewestFrames) ++statistics.tracks_cut_short;
   }
-  statistics.tracks = static_cast<std::int64_t>(frames.size());
-  statistics.histogram = ComputeHistogram(frames);
-  statistics.histogram_seconds = ComputeSecondsHistogram(nanoseconds, interval);
-  statistics.in_frames = ComputeMoments(std::move(frames));
-  statistics.in_seconds = ComputeMoments(std::move(seconds));
+  statistics.tracks = Total(counts.frames);
+  statistics.tracks_too_short = counts.too_short;
+  statistics.histogram = ComputeHistogram(counts.frames);
+  statistics.histogram_seconds = ComputeSecondsHistogram(counts.durations, interval);
+  statistics.in_frames = ComputeMoments(counts.frames, [](int frames) { return static_cast<double>(frames); });
+  statistics.in_seconds = ComputeMoments(counts.durations, ToSeconds);
   return statistics;
+}
+
+LifetimeStatistics ComputeLifetimes(const Tracks& tracks, std::span<const TimeNs> frame_stamps) {
+  LifetimeCounter counter;
+  counter.Add(tracks);
+  return counter.Statistics(frame_stamps);
 }
 
 }  // namespace evo

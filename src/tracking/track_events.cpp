@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <future>
 #include <opencv2/core/utility.hpp>
-#include <unordered_map>
-#include <unordered_set>
 
 #include "evo/core/error.hpp"
-#include "evo/tracking/camera_shake.hpp"
 #include "evo/tracking/tracker.hpp"
 
 namespace evo {
@@ -16,29 +13,18 @@ namespace {
 
 constexpr double kBetweenDropsS = 0.08;  // looking at every tile costs more than some frames' events more do
 
-void DropWithdrawn(const std::vector<std::int64_t>& ids, Tracks* tracks) {
-  const std::unordered_set<std::int64_t> withdrawn(ids.begin(), ids.end());
-  std::erase_if(*tracks, [&](const auto& observation) { return withdrawn.contains(observation.id); });
-}
-
-void DropLoneObservations(Tracks* tracks) {
-  std::unordered_map<std::int64_t, int> count;
-  for (const auto& observation : *tracks) ++count[observation.id];
-  std::erase_if(*tracks, [&](const auto& observation) { return count[observation.id] < 2; });
-}
-
 }  // namespace
 
 TrackingResult TrackEvents(EventReader* reader, const Camera& camera, const TrackerOptions& options, ThreadPool* pool,
-                           const std::function<void(double)>& progress,
+                           const TrackSink& sink, const std::function<void(double)>& progress,
                            const std::function<void(const TrackingView&)>& observe) {
   // Its variants for newer processors round differently: the tracks would depend on the machine.
   cv::setUseOptimized(false);
   cv::setNumThreads(1);  // the pool's threads are all that were asked for
   EventHistory history(camera.width(), camera.height());
   const std::unique_ptr<Tracker> tracker = MakeTracker(camera, options, pool);
+  TrackBuffer buffer(camera, options, pool, sink);
   TrackingResult result;
-  std::vector<ObservedWindow> windows;  // of the observations
   const TimeNs interval = FromSeconds(options.frame_interval_s);
   const TimeNs half_window = FromSeconds(0.5 * options.longest_window_s);
   std::optional<TimeNs> dropped;  // frame at which old events were forgotten
@@ -51,11 +37,8 @@ TrackingResult TrackEvents(EventReader* reader, const Camera& camera, const Trac
     tracker->Process(history, t, read_ahead);
     result.frames.push_back(t);
     if (tracker->detected()) ++result.key_frames;
-    const Tracks observations = tracker->Observations();
-    result.tracks.insert(result.tracks.end(), observations.begin(), observations.end());
-    const auto seen = tracker->Windows();
-    windows.insert(windows.end(), seen.begin(), seen.end());
-    if (observe) observe({history, result.tracks, t});
+    buffer.Add(t, tracker->Observations(), tracker->Windows(), tracker->Withdrawn());
+    if (observe) observe({history, buffer.held(), t});
   };
 
   // One block is decoded while the one before it is tracked.
@@ -94,9 +77,7 @@ TrackingResult TrackEvents(EventReader* reader, const Camera& camera, const Trac
         ErrorKind::kNothingToDo,
         "the events span less than two event frames; choose a longer interval or a smaller tracker.frame_interval_s");
   }
-  if (options.restore_shake) RestoreShake(camera, windows, pool, &result.tracks);
-  DropWithdrawn(tracker->Withdrawn(), &result.tracks);
-  DropLoneObservations(&result.tracks);
+  buffer.Finish();
   return result;
 }
 

@@ -9,11 +9,6 @@
 #include "io/support.hpp"
 
 namespace evo {
-
-static bool operator==(const TrackObservation& a, const TrackObservation& b) {
-  return a.id == b.id && a.t == b.t && a.x == b.x && a.y == b.y;
-}
-
 namespace {
 
 class TracksTest : public IoTest {
@@ -36,6 +31,23 @@ TEST_F(TracksTest, ReadsWhatItWrites) {
             "7 1506117912.000000001 345.0001 -0.5000\n"
             "0 1506117912.020000000 1.5000 2.7500\n");
   EXPECT_TRUE(ReadTracks(folder / "out" / "tracks.txt") == tracks);
+}
+
+TEST_F(TracksTest, PartByPartGivesTheSameFile) {
+  const Tracks tracks = {{0, kNsPerSecond, 1.25, 2.5}, {7, kNsPerSecond, 3, 4}, {0, 2 * kNsPerSecond, 1.5, 2.75}};
+  WriteTracks(folder / "whole.txt", tracks, {"a comment"});
+  {
+    TrackWriter writer(folder / "parts.txt", {"a comment"});
+    writer.Write(std::span(tracks).first(2));
+    writer.Write({});
+    writer.Write(std::span(tracks).subspan(2));
+    EXPECT_FALSE(std::filesystem::exists(folder / "parts.txt"));
+    writer.Commit();
+    TrackWriter abandoned(folder / "abandoned.txt");
+    abandoned.Write(tracks);
+  }
+  EXPECT_EQ(Content(folder / "parts.txt"), Content(folder / "whole.txt"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "abandoned.txt"));
 }
 
 TEST_F(TracksTest, RoundedTracksAreWhatTheFileGivesBack) {

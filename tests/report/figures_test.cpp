@@ -118,9 +118,9 @@ TEST_F(FiguresTest, ScaleDriftIsBrokenWhereItIsUndetermined) {
 }
 
 TEST_F(FiguresTest, LiveFeaturesCountEveryFrame) {
-  const std::vector<TimeNs> frames{kNsPerSecond, 2 * kNsPerSecond, 3 * kNsPerSecond, 4 * kNsPerSecond};
-  const Tracks tracks{{1, frames[0], 0, 0}, {2, frames[0], 0, 0}, {1, frames[1], 0, 0}, {2, frames[3], 0, 0}};
-  const Figure figure = LiveFeaturesFigure("f", tracks, frames);
+  const std::vector<LiveFeatures> frames{
+      {kNsPerSecond, 2}, {2 * kNsPerSecond, 1}, {3 * kNsPerSecond, 0}, {4 * kNsPerSecond, 1}};
+  const Figure figure = LiveFeaturesFigure("f", frames);
   EXPECT_EQ(figure.data, "# seconds since the first frame, live features\n0 2\n1 1\n2 0\n3 1\n");
   EXPECT_NE(figure.script.find("'mean 1.0'"), std::string::npos) << figure.script;
 }
@@ -162,9 +162,9 @@ TEST_F(FiguresTest, LongCurvesAreThinnedInThePictureOnly) {
   EXPECT_NE(figure.script.find("data every 3 using"), std::string::npos) << figure.script;
 }
 
-/// All figures of one evaluation and of `tracks`; true if gnuplot drew every one of them without a word.
+/// All figures of one evaluation and of its tracks; true if gnuplot drew every one of them without a word.
 bool DrawsAll(const fs::path& folder, const Evaluation& evaluation, std::span<const TimeNs> restarts,
-              const LifetimeStatistics& lifetimes, const Tracks& tracks, std::span<const TimeNs> frames) {
+              const LifetimeStatistics& lifetimes, std::span<const LiveFeatures> live) {
   const auto& result = evaluation.alignments[0];
   const std::vector<std::pair<std::string, Figure>> figures{
       {"trajectory", TrajectoryFigure("trajectory", evaluation, result)},
@@ -174,7 +174,7 @@ bool DrawsAll(const fs::path& folder, const Evaluation& evaluation, std::span<co
       {"scale", ScaleDriftFigure("scale", evaluation, result, restarts)},
       {"lifetime", LifetimeFigure("lifetime", lifetimes)},
       {"lifetime_seconds", LifetimeSecondsFigure("lifetime_seconds", lifetimes)},
-      {"live_features", LiveFeaturesFigure("live_features", tracks, frames)}};
+      {"live_features", LiveFeaturesFigure("live_features", live)}};
   bool all = true;
   for (const auto& [name, figure] : figures) {
     Gnuplot(folder).Draw(name, figure);
@@ -193,8 +193,9 @@ TEST_F(FiguresTest, DrawsSvgAndPdfWithTheSameBytesEachTime) {
   lifetimes.histogram = {{3, 5, 4}, {5, 7, 1}};
   lifetimes.histogram_seconds = {{0.0, 0.05, 4}, {0.05, 0.1, 1}};
   const std::vector<TimeNs> restarts{5 * kNsPerSecond, 7 * kNsPerSecond};
+  const std::vector<LiveFeatures> live{{restarts[0], 1}, {restarts[1], 0}};
   for (const char* run : {"a", "b"}) {
-    ASSERT_TRUE(DrawsAll(folder / run, SampleEvaluation(), restarts, lifetimes, {{1, 0, 5, 5}}, restarts));
+    ASSERT_TRUE(DrawsAll(folder / run, SampleEvaluation(), restarts, lifetimes, live));
   }
   EXPECT_EQ(std::distance(fs::directory_iterator(folder / "a"), {}), 8 * 4);
   for (const auto& entry : fs::directory_iterator(folder / "a")) {
@@ -227,7 +228,7 @@ TEST_F(FiguresTest, DrawsWhatIsDegenerateOrExtreme) {
       {"absurd errors", EvaluateLine(50, 1e30, 1e60)}, {"far away", EvaluateLine(50, 1e-3, 1e-4, 1e7)}};
   for (const auto& [name, evaluation] : cases) {
     SCOPED_TRACE(name);
-    EXPECT_TRUE(DrawsAll(folder / name, evaluation, {}, {}, {}, {}));
+    EXPECT_TRUE(DrawsAll(folder / name, evaluation, {}, {}, {}));
   }
 }
 

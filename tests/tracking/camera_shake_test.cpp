@@ -8,6 +8,7 @@
 
 #include "evo/geometry/known_cameras.hpp"
 #include "evo/geometry/se3.hpp"
+#include "evo/tracking/track_buffer.hpp"
 
 namespace evo {
 namespace {
@@ -15,7 +16,6 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kDurationS = 8.0;
 constexpr double kSmearS = 0.016;
 
 /// Points far away, seen by a camera that turns slowly and vibrates; each position is the mean over a window, each flow
@@ -32,14 +32,15 @@ struct ShakyTracks {
     return {0.004 * std::sin(2.0 * t) + shake, 0.02 * t + 0.5 * shake, 0.0};
   }
 
-  explicit ShakyTracks(double noise_px, double amplitude = 0.002, double frame_s = 0.02) : amplitude_rad(amplitude) {
+  explicit ShakyTracks(double noise_px, double amplitude = 0.002, double frame_s = 0.02, double duration_s = 8.0)
+      : amplitude_rad(amplitude) {
     std::mt19937 random(7);
     const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
     std::vector<Vector3d> rays;
     for (int i = 0; i < 40; ++i) {
       rays.push_back(camera.Undistort({30.0 + 280.0 * uniform(), 30.0 + 200.0 * uniform()})->homogeneous());
     }
-    for (int frame = 0; frame < static_cast<int>(kDurationS / frame_s); ++frame) {
+    for (int frame = 0; frame < static_cast<int>(duration_s / frame_s); ++frame) {
       for (std::size_t i = 0; i < rays.size(); ++i) {
         const double t = frame * frame_s;
         const double half = i % 2 ? 0.04 : 0.005;
@@ -62,11 +63,12 @@ struct ShakyTracks {
   }
 
   /// Root mean square over the tracks with long windows.
-  double Error(const Tracks& tracks) const {
+  double Error(const Tracks& tracks, double from_s = 0.0, double to_s = 1e9) const {
     double sum = 0.0;
     int count = 0;
     for (std::size_t i = 0; i < tracks.size(); ++i) {
-      if (windows[i].half_s < 0.02f) continue;
+      const double t = ToSeconds(tracks[i].t);
+      if (windows[i].half_s < 0.02f || t < from_s || t >= to_s) continue;
       sum += std::pow(tracks[i].x - exact[i].x, 2) + std::pow(tracks[i].y - exact[i].y, 2);
       ++count;
     }
@@ -74,61 +76,73 @@ struct ShakyTracks {
   }
 };
 
+/// All of them, taken for one stretch.
+Tracks Restored(const ShakyTracks& scene) {
+  Tracks restored = scene.smoothed;
+  RestoreShake(scene.camera, LensGrid(scene.camera), scene.smoothed, scene.windows, 0, restored);
+  return restored;
+}
+
+/// Through a buffer, frame by frame.
+Tracks RestoredInPassing(const ShakyTracks& scene, int threads) {
+  ThreadPool pool(threads);
+  Tracks restored;
+  TrackBuffer buffer(scene.camera, {}, &pool,
+                     [&](const Tracks& next) { restored.insert(restored.end(), next.begin(), next.end()); });
+  for (std::size_t i = 0, end = 0; i < scene.smoothed.size(); i = end) {
+    const TimeNs t = scene.smoothed[i].t;
+    while (end < scene.smoothed.size() && scene.smoothed[end].t == t) ++end;
+    const auto frame = std::span(scene.smoothed).subspan(i, end - i);
+    buffer.Add(t, Tracks(frame.begin(), frame.end()), std::span(scene.windows).subspan(i, end - i), {});
+  }
+  buffer.Finish();
+  return restored;
+}
+
 TEST(RestoreShake, GivesBackWhatLongWindowsSmoothAway) {
   const ShakyTracks scene(0.1);
-  ThreadPool pool(2);
-  Tracks restored = scene.smoothed;
-  RestoreShake(scene.camera, scene.windows, &pool, &restored);
   EXPECT_GT(scene.Error(scene.smoothed), 0.25);
-  EXPECT_LT(scene.Error(restored), 0.4 * scene.Error(scene.smoothed));
+  EXPECT_LT(scene.Error(Restored(scene)), 0.4 * scene.Error(scene.smoothed));
 }
 
 TEST(RestoreShake, DoesSoForShortFramesToo) {
   for (const double frame_s : {0.005, 0.01, 0.025}) {
     const ShakyTracks scene(0.1, 0.002, frame_s);
-    ThreadPool pool(2);
-    Tracks restored = scene.smoothed;
-    RestoreShake(scene.camera, scene.windows, &pool, &restored);
-    EXPECT_LT(scene.Error(restored), 0.55 * scene.Error(scene.smoothed)) << frame_s;
+    EXPECT_LT(scene.Error(Restored(scene)), 0.55 * scene.Error(scene.smoothed)) << frame_s;
+  }
+}
+
+TEST(RestoreShake, DoesSoInPassingForAnyNumberOfThreads) {
+  const ShakyTracks scene(0.1, 0.002, 0.02, 24.0);
+  const Tracks one = RestoredInPassing(scene, 1), three = RestoredInPassing(scene, 3);
+  ASSERT_EQ(one.size(), scene.smoothed.size());
+  EXPECT_TRUE(one == three);
+  for (double from = 0.0; from < 24.0; from += 2.5) {  // also where stretches meet
+    EXPECT_LT(scene.Error(one, from, from + 2.5), 0.5 * scene.Error(scene.smoothed, from, from + 2.5)) << from;
   }
 }
 
 TEST(RestoreShake, LeavesAloneWhatTellsNothing) {
-  ThreadPool pool(1);
   const ShakyTracks slow(0.1, 0.002, 0.04);
-  Tracks restored = slow.smoothed;
-  RestoreShake(slow.camera, slow.windows, &pool, &restored);
-  for (std::size_t i = 0; i < restored.size(); ++i) ASSERT_EQ(restored[i].x, slow.smoothed[i].x);
+  EXPECT_TRUE(Restored(slow) == slow.smoothed);
   // A gap of an hour, equal stamps, a window longer than any.
   Tracks few = {{1, 0, 100, 100}, {1, 0, 101, 100}, {1, 3600 * kNsPerSecond, 102, 100}, {2, 3600 * kNsPerSecond, 5, 5}};
   const std::vector<ObservedWindow> windows(few.size(), {1.0f, {50.0f, 0.0f}});
-  RestoreShake(slow.camera, windows, &pool, &few);
+  const Tracks seen = few;
+  RestoreShake(slow.camera, LensGrid(slow.camera), seen, windows, 0, few);
   EXPECT_EQ(few[2].x, 102);
 }
 
 TEST(RestoreShake, HardlyDisturbsASteadyCamera) {
   const ShakyTracks scene(0.1, 0.0);
-  ThreadPool pool(1);
-  Tracks restored = scene.smoothed;
-  RestoreShake(scene.camera, scene.windows, &pool, &restored);
-  EXPECT_LT(scene.Error(restored), scene.Error(scene.smoothed) + 0.02);
+  EXPECT_LT(scene.Error(Restored(scene)), scene.Error(scene.smoothed) + 0.02);
 }
 
-TEST(RestoreShake, IsTheSameForAnyNumberOfThreadsAndLeavesInstantsAlone) {
-  const ShakyTracks scene(0.1);
-  ThreadPool one(1), three(3);
-  Tracks a = scene.smoothed, b = scene.smoothed, c = scene.smoothed;
-  RestoreShake(scene.camera, scene.windows, &one, &a);
-  RestoreShake(scene.camera, scene.windows, &three, &b);
-  RestoreShake(scene.camera, std::vector<ObservedWindow>(c.size()), &one, &c);
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    ASSERT_EQ(a[i].x, b[i].x);
-    ASSERT_EQ(a[i].y, b[i].y);
-    ASSERT_EQ(c[i].x, scene.smoothed[i].x);
-    ASSERT_EQ(c[i].y, scene.smoothed[i].y);
-  }
-  Tracks nothing;
-  RestoreShake(scene.camera, {}, &one, &nothing);
+TEST(RestoreShake, LeavesInstantsAlone) {
+  ShakyTracks scene(0.1);
+  scene.windows.assign(scene.windows.size(), {});
+  EXPECT_TRUE(Restored(scene) == scene.smoothed);
+  RestoreShake(scene.camera, LensGrid(scene.camera), {}, {}, 0, {});
 }
 
 }  // namespace

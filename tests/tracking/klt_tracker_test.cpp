@@ -4,19 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <vector>
 
 #include "evo/core/error.hpp"
-#include "evo/tracking/track_events.hpp"
-#include "tracking/synthetic_events.hpp"
+#include "tracking/track_all.hpp"
 
 namespace evo {
 namespace {
 
 using Eigen::Vector2d;
+using evo::testing::ById;
 using evo::testing::CrossScene;
-using evo::testing::MemoryReader;
+using evo::testing::TrackAll;
+using evo::testing::TrackedStream;
 
 constexpr int kAnyNumber = 1'000'000;
 
@@ -29,21 +29,9 @@ TrackerOptions KltWith(int events, double longest_window_s) {
   return options;
 }
 
-TrackingResult TrackAll(const EventColumns& events, const TrackerOptions& options, int threads = 1) {
-  MemoryReader reader(events);
-  ThreadPool pool(threads);
-  return TrackEvents(&reader, evo::testing::SceneCamera(), options, &pool, {});
-}
-
-std::map<std::int64_t, std::vector<TrackObservation>> ById(const Tracks& tracks) {
-  std::map<std::int64_t, std::vector<TrackObservation>> by_id;
-  for (const auto& observation : tracks) by_id[observation.id].push_back(observation);
-  return by_id;
-}
-
 TEST(KltTracker, FollowsASceneThatTurnsBack) {
   const auto shift = [](double t) -> Vector2d { return 0.6 / M_PI * std::sin(M_PI * t / 0.6) * Vector2d(150, 40); };
-  const TrackingResult result = TrackAll(CrossScene(75, 4).Events(shift, 0.6, 1000.0), KltWith(kAnyNumber, 0.02));
+  const TrackedStream result = TrackAll(CrossScene(75, 4).Events(shift, 0.6, 1000.0), KltWith(kAnyNumber, 0.02));
   std::vector<double> errors;
   for (const auto& [id, track] : ById(result.tracks)) {
     const auto& [first, last] = std::pair(track.front(), track.back());

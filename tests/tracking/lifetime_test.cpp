@@ -47,6 +47,32 @@ TEST(Lifetime, CountsFramesAndSecondsOfTracksThatCount) {
   EXPECT_DOUBLE_EQ(statistics.in_seconds.max, 0.225);
 }
 
+TEST(Lifetime, PartByPartIsTheSame) {
+  Tracks tracks;
+  for (int i = 0; i < 300; ++i) Append(&tracks, i, i / 2, 1 + i % 40);
+  tracks = Sorted(tracks);
+  const auto stamps = FrameStamps(static_cast<int>(tracks.back().t / kFrame) + 1);
+  const auto whole = ComputeLifetimes(tracks, stamps);
+  LifetimeCounter counter;
+  for (std::size_t i = 0, end = 0; i < tracks.size(); i = end) {
+    while (end < tracks.size() && tracks[end].t <= tracks[i].t + 3 * kFrame) ++end;
+    counter.Add(std::span(tracks).subspan(i, end - i));
+    counter.EndBefore(tracks[end - 1].t);
+  }
+  const auto parts = counter.Statistics(stamps);
+  EXPECT_GT(whole.tracks_cut_short, 0);
+  EXPECT_EQ(parts.tracks, whole.tracks);
+  EXPECT_EQ(parts.tracks_too_short, whole.tracks_too_short);
+  EXPECT_EQ(parts.tracks_cut_short, whole.tracks_cut_short);
+  EXPECT_EQ(parts.in_frames.mean, whole.in_frames.mean);
+  EXPECT_EQ(parts.in_seconds.standard_deviation, whole.in_seconds.standard_deviation);
+  EXPECT_EQ(parts.in_seconds.median, whole.in_seconds.median);
+  ASSERT_EQ(parts.histogram.size(), whole.histogram.size());
+  for (std::size_t i = 0; i < parts.histogram.size(); ++i) {
+    EXPECT_EQ(parts.histogram[i].tracks, whole.histogram[i].tracks);
+  }
+}
+
 TEST(Lifetime, HistogramInSecondsSharesItsBinsOutEvenly) {
   Tracks tracks;
   for (int i = 0; i < 120; ++i) Append(&tracks, i, 0, 3 + i);  // one track for each lifetime of 2 to 121 intervals

@@ -9,34 +9,23 @@
 #include <vector>
 
 #include "evo/core/error.hpp"
-#include "tracking/synthetic_events.hpp"
+#include "tracking/track_all.hpp"
 
 namespace evo {
 namespace {
 
 using Eigen::Vector2d;
+using evo::testing::ById;
 using evo::testing::CrossScene;
-using evo::testing::MemoryReader;
 using evo::testing::Motion;
+using evo::testing::TrackAll;
+using evo::testing::TrackedStream;
+using evo::testing::TracksById;
 
 constexpr double kDuration = 0.6;
 
 /// To the right, slower and slower, then back to the left.
 Vector2d ThereAndBack(double t) { return 0.6 / M_PI * std::sin(M_PI * t / 0.6) * Vector2d(150.0, 40.0); }
-
-TrackingResult TrackAll(const EventColumns& events, int threads, const TrackerOptions& options = {}) {
-  MemoryReader reader(events);
-  ThreadPool pool(threads);
-  return TrackEvents(&reader, evo::testing::SceneCamera(), options, &pool, {});
-}
-
-using TracksById = std::map<std::int64_t, std::vector<TrackObservation>>;
-
-TracksById ById(const Tracks& tracks) {
-  TracksById by_id;
-  for (const auto& observation : tracks) by_id[observation.id].push_back(observation);
-  return by_id;
-}
 
 /// From begin to end of the tracks that live from `born_by_s` to `alive_at_s` in a scene that moves so, px.
 std::vector<Vector2d> Errors(const TracksById& tracks, const Motion& moved, double born_by_s, double alive_at_s) {
@@ -61,18 +50,18 @@ class TrackEventsTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     events = new EventColumns(CrossScene(75, 4).Events(ThereAndBack, kDuration, 1000.0));
-    result = new TrackingResult(TrackAll(*events, 1));
+    result = new TrackedStream(TrackAll(*events, {}, 1));
   }
   static void TearDownTestSuite() {
     delete events;
     delete result;
   }
   static EventColumns* events;
-  static TrackingResult* result;
+  static TrackedStream* result;
 };
 
 EventColumns* TrackEventsTest::events = nullptr;
-TrackingResult* TrackEventsTest::result = nullptr;
+TrackedStream* TrackEventsTest::result = nullptr;
 
 TEST_F(TrackEventsTest, TracksFollowASceneThatTurnsBack) {
   const std::vector<Vector2d> errors = Errors(ById(result->tracks), ThereAndBack, 0.3, 0.35);
@@ -89,8 +78,8 @@ double LeadOverCrosses(const Vector2d& velocity) {
   const CrossScene scene(60, 4);
   TrackerOptions options;
   options.uninformative_share = 0.0;  // as many crosses as can be had
-  const TrackingResult tracked =
-      TrackAll(scene.Events([&](double t) { return Vector2d(velocity * (t - 0.2)); }, 0.4, 1000.0), 2, options);
+  const TrackedStream tracked =
+      TrackAll(scene.Events([&](double t) { return Vector2d(velocity * (t - 0.2)); }, 0.4, 1000.0), options, 2);
   std::vector<double> leads;
   for (const auto& observation : tracked.tracks) {
     const Vector2d point = Vector2d(observation.x, observation.y) - velocity * (ToSeconds(observation.t) - 0.2);
@@ -126,7 +115,7 @@ TEST(TrackEvents, FeaturesOutliveAStop) {
       const double speed = (moved(t + 0.001) - moved(t - 0.001)).norm() / 0.002;
       if (speed > 10.0) events.push_back(all.t[i], all.x[i], all.y[i], all.polarity[i]);
     }
-    const TracksById tracks = ById(TrackAll(events, 2).tracks);
+    const TracksById tracks = ById(TrackAll(events, {}, 2).tracks);
     for (const auto& error : Errors(tracks, moved, 0.4, 1.05)) errors.push_back(error);
     for (const auto& [id, track] : tracks) {
       if (ToSeconds(track.front().t) > 0.4 || ToSeconds(track.back().t) < 1.05) continue;
@@ -151,7 +140,7 @@ std::vector<Vector2d> ErrorsOverABump(bool follow_jolts, double window_bend_px) 
   options.uninformative_share = 0.0;  // as many crosses as can be had
   std::vector<Vector2d> errors;
   for (const unsigned seed : {6, 7, 8}) {
-    const TrackingResult tracked = TrackAll(CrossScene(120, seed).Events(moved, 0.7, 1000.0), 2, options);
+    const TrackedStream tracked = TrackAll(CrossScene(120, seed).Events(moved, 0.7, 1000.0), options, 2);
     for (const auto& error : Errors(ById(tracked.tracks), moved, 0.25, 0.6)) errors.push_back(error);
   }
   return errors;
@@ -198,7 +187,7 @@ TEST_F(TrackEventsTest, ObservationsAreSortedUniqueAndAtFrameStamps) {
 }
 
 TEST_F(TrackEventsTest, SameTracksForAnyNumberOfThreads) {
-  const TrackingResult other = TrackAll(*events, 3);
+  const TrackedStream other = TrackAll(*events, {}, 3);
   ASSERT_EQ(other.tracks.size(), result->tracks.size());
   for (std::size_t i = 0; i < other.tracks.size(); ++i) {
     EXPECT_EQ(other.tracks[i].id, result->tracks[i].id);
@@ -210,7 +199,7 @@ TEST_F(TrackEventsTest, SameTracksForAnyNumberOfThreads) {
 TEST_F(TrackEventsTest, AHotPixelIsNoFeature) {
   EventColumns hot;
   for (TimeNs t = 0; t < 600'000'000; t += 100'000) hot.push_back(t, 60, 45, t % 200'000 ? 1 : -1);
-  EXPECT_TRUE(TrackAll(hot, 1).tracks.empty());
+  EXPECT_TRUE(TrackAll(hot, {}).tracks.empty());
 }
 
 TEST(TrackEvents, SaysWhenThereAreNoTwoFrames) {
@@ -218,7 +207,7 @@ TEST(TrackEvents, SaysWhenThereAreNoTwoFrames) {
   few.push_back(0, 1, 1, 1);
   few.push_back(1000, 2, 2, 1);
   try {
-    TrackAll(few, 1);
+    TrackAll(few, {});
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::kNothingToDo);

@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "evo/core/output_file.hpp"
 #include "evo/core/time.hpp"
 
 namespace evo {
@@ -15,6 +17,7 @@ struct TrackObservation {
   TimeNs t = 0;
   double x = 0.0;  ///< px
   double y = 0.0;  ///< px
+  bool operator==(const TrackObservation&) const = default;
 };
 
 /// Sorted by time, then id; one observation for each id and stamp.
@@ -26,13 +29,25 @@ using Tracks = std::vector<TrackObservation>;
 /// Throws Error (kInput) with file and line.
 Tracks ReadTracks(const std::filesystem::path& path);
 
-/// Rounds the positions to the four decimals that WriteTracks writes, so that who goes on with `tracks` and who reads
+/// Rounds the positions to the four decimals that TrackWriter writes, so that who goes on with `tracks` and who reads
 /// the file see the same numbers.
 void RoundAsWritten(Tracks* tracks);
 
 /// Writes rows `id t x y` in the order given: stamps with nine decimals, pixels with four, below the header line
 /// `# id timestamp x y` and one comment line for each of `comments`. Throws Error (kOutput, or kInput for a position
-/// that is not finite).
+/// that is not finite). The file appears with Commit(), whole.
+class TrackWriter {
+ public:
+  explicit TrackWriter(std::filesystem::path path, const std::vector<std::string>& comments = {});
+  void Write(std::span<const TrackObservation> observations);
+  void Commit() { file_.Commit(); }
+
+ private:
+  std::filesystem::path path_;
+  OutputFile file_;
+};
+
+/// All in one call.
 void WriteTracks(const std::filesystem::path& path, const Tracks& tracks,
                  const std::vector<std::string>& comments = {});
 

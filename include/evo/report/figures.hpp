@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 
@@ -37,8 +38,13 @@ Figure LifetimeFigure(const std::string& name, const LifetimeStatistics& statist
 /// The same in seconds.
 Figure LifetimeSecondsFigure(const std::string& name, const LifetimeStatistics& statistics);
 
-/// Number of features seen in each frame over the time since the first of `frame_stamps`, with the mean over the
-/// frames.
-Figure LiveFeaturesFigure(const std::string& name, const Tracks& tracks, std::span<const TimeNs> frame_stamps);
+/// Features seen in a frame.
+struct LiveFeatures {
+  TimeNs t = 0;
+  std::int64_t features = 0;
+};
+
+/// Their number over the time since the first of `frames`, with the mean over the frames.
+Figure LiveFeaturesFigure(const std::string& name, std::span<const LiveFeatures> frames);
 
 }  // namespace evo

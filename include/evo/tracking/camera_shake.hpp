@@ -1,16 +1,21 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 
-#include "evo/core/parallel.hpp"
 #include "evo/core/time.hpp"
 #include "evo/geometry/camera.hpp"
 #include "evo/io/tracks.hpp"
+#include "evo/tracking/lens_grid.hpp"
 #include "evo/tracking/observed_window.hpp"
 
 namespace evo {
 
-/// Gives back to the positions of `tracks` what the windows that they come from have smoothed away.
+/// Time that is solved by itself, and how much of what was seen before and after it is to be known.
+inline constexpr TimeNs kShakeStretch = 5 * kNsPerSecond;
+inline constexpr TimeNs kShakeMargin = kNsPerSecond / 2;
+
+/// Gives back to the positions of a stretch what the windows that they come from have smoothed away.
 ///
 /// A position is the intercept of a straight motion fitted to the events of a window, so it is the mean of the true
 /// path over that window; the flow is its slope. Where the camera shakes (vibration, bumps) within the long window of a
@@ -24,7 +29,9 @@ namespace evo {
 /// J_i (phi - K_i phi). The sensor smears positions besides, since dark pixels answer late: K_i is of a longer window.
 ///
 /// Frames must be evenly spaced; where they are more than 25 ms apart they cannot show a shake and nothing changes.
-/// `windows`: of each observation. Every few seconds are solved for themselves.
-void RestoreShake(const Camera& camera, std::span<const ObservedWindow> windows, ThreadPool* pool, Tracks* tracks);
+/// `seen`: all observations of the stretch and its margins, in order of time; `windows`: of each of them. `restored`:
+/// those of the stretch, a copy of `seen` from index `first` on.
+void RestoreShake(const Camera& camera, const LensGrid& lens, std::span<const TrackObservation> seen,
+                  std::span<const ObservedWindow> windows, std::size_t first, std::span<TrackObservation> restored);
 
 }  // namespace evo

@@ -123,8 +123,8 @@ class FeatureTracker : public Tracker {
   FlowField flow_field_;
   RefillPolicy refill_;
   OddityJudge oddity_judge_;
-  std::vector<std::int64_t> withdrawn_;
-  std::deque<double> informations_;  // of the last features at birth, the refused ones among them
+  std::vector<std::int64_t> withdrawn_;  // in the last frame
+  std::deque<double> informations_;      // of the last features at birth, the refused ones among them
   std::vector<TrackedFeature> features_;
   std::vector<FeatureAlignment> alignments_;  // of the features, in their order; some more are kept for their memory
   std::int64_t next_id_ = 0;

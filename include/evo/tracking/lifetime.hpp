@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "evo/core/time.hpp"
@@ -50,7 +52,36 @@ struct LifetimeStatistics {
   std::vector<LifetimeSecondsBin> histogram_seconds;
 };
 
-/// `frame_stamps` are those of all frames of the recording, ascending, those without any track included.
+/// Collects the lifetimes of tracks that come part by part.
+class LifetimeCounter {
+ public:
+  /// The next observations, in order of time.
+  void Add(std::span<const TrackObservation> observations);
+  /// Takes the tracks last seen before `t` for over: their ids will not come again. That frees memory.
+  void EndBefore(TimeNs t);
+  /// Of all tracks so far. `frame_stamps` are those of all frames of the recording, ascending, those without any track
+  /// included; tracks ended by EndBefore do not reach the last one.
+  LifetimeStatistics Statistics(std::span<const TimeNs> frame_stamps) const;
+
+ private:
+  struct Lifetime {
+    int frames = 0;
+    TimeNs first = 0;
+    TimeNs last = 0;
+  };
+  /// Of kFewestFrames or more: how many tracks have each lifetime.
+  struct Counts {
+    std::map<int, std::int64_t> frames;
+    std::map<TimeNs, std::int64_t> durations;
+    std::int64_t too_short = 0;
+    void Add(const Lifetime& lifetime);
+  };
+
+  std::unordered_map<std::int64_t, Lifetime> open_;
+  Counts ended_;
+};
+
+/// Of all in one call.
 LifetimeStatistics ComputeLifetimes(const Tracks& tracks, std::span<const TimeNs> frame_stamps);
 
 }  // namespace evo

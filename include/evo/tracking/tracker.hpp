@@ -15,6 +15,9 @@
 
 namespace evo {
 
+/// A feature that has been seen in more frames than this is not withdrawn any more.
+inline constexpr int kOldestWithdrawn = 100;
+
 /// Follows features from event frame to event frame. An event frame is an instant with a window of events around it.
 class Tracker {
  public:
@@ -30,7 +33,8 @@ class Tracker {
   virtual Tracks Observations() const = 0;
   /// What each of them comes from; instants where the window is not around the stamp.
   virtual std::vector<ObservedWindow> Windows() const = 0;
-  /// The ids of all features so far whose observations have turned out to be worth nothing.
+  /// The ids of the features whose observations, as the last frame shows, are worth nothing; they are not observed from
+  /// that frame on.
   virtual std::vector<std::int64_t> Withdrawn() const = 0;
   /// Whether the last frame was a key frame, where new features were detected.
   virtual bool detected() const = 0;
