@@ -84,16 +84,16 @@ Tracks Restored(const ShakyTracks& scene) {
 }
 
 /// Through a buffer, frame by frame.
-Tracks RestoredInPassing(const ShakyTracks& scene, int threads) {
+Tracks RestoredInPassing(const Camera& camera, const Tracks& smoothed, std::span<const ObservedWindow> windows,
+                         int threads) {
   ThreadPool pool(threads);
   Tracks restored;
-  TrackBuffer buffer(scene.camera, {}, &pool,
+  TrackBuffer buffer(camera, {}, &pool,
                      [&](const Tracks& next) { restored.insert(restored.end(), next.begin(), next.end()); });
-  for (std::size_t i = 0, end = 0; i < scene.smoothed.size(); i = end) {
-    const TimeNs t = scene.smoothed[i].t;
-    while (end < scene.smoothed.size() && scene.smoothed[end].t == t) ++end;
-    const auto frame = std::span(scene.smoothed).subspan(i, end - i);
-    buffer.Add(t, Tracks(frame.begin(), frame.end()), std::span(scene.windows).subspan(i, end - i), {});
+  for (std::size_t i = 0, end = 0; i < smoothed.size(); i = end) {
+    while (end < smoothed.size() && smoothed[end].t == smoothed[i].t) ++end;
+    const auto frame = std::span(smoothed).subspan(i, end - i);
+    buffer.Add(smoothed[i].t, Tracks(frame.begin(), frame.end()), windows.subspan(i, end - i), {});
   }
   buffer.Finish();
   return restored;
@@ -114,7 +114,8 @@ TEST(RestoreShake, DoesSoForShortFramesToo) {
 
 TEST(RestoreShake, DoesSoInPassingForAnyNumberOfThreads) {
   const ShakyTracks scene(0.1, 0.002, 0.02, 24.0);
-  const Tracks one = RestoredInPassing(scene, 1), three = RestoredInPassing(scene, 3);
+  const Tracks one = RestoredInPassing(scene.camera, scene.smoothed, scene.windows, 1);
+  const Tracks three = RestoredInPassing(scene.camera, scene.smoothed, scene.windows, 3);
   ASSERT_EQ(one.size(), scene.smoothed.size());
   EXPECT_TRUE(one == three);
   for (double from = 0.0; from < 24.0; from += 2.5) {  // also where stretches meet
@@ -126,11 +127,12 @@ TEST(RestoreShake, LeavesAloneWhatTellsNothing) {
   const ShakyTracks slow(0.1, 0.002, 0.04);
   EXPECT_TRUE(Restored(slow) == slow.smoothed);
   // A gap of an hour, equal stamps, a window longer than any.
-  Tracks few = {{1, 0, 100, 100}, {1, 0, 101, 100}, {1, 3600 * kNsPerSecond, 102, 100}, {2, 3600 * kNsPerSecond, 5, 5}};
+  const TimeNs hour = 3600 * kNsPerSecond;
+  const Tracks few = {{1, 0, 100, 100}, {1, 0, 101, 100}, {1, hour, 102, 100}, {2, hour, 5, 5}};
   const std::vector<ObservedWindow> windows(few.size(), {1.0f, {50.0f, 0.0f}});
-  const Tracks seen = few;
-  RestoreShake(slow.camera, LensGrid(slow.camera), seen, windows, 0, few);
-  EXPECT_EQ(few[2].x, 102);
+  const Tracks restored = RestoredInPassing(slow.camera, few, windows, 1);
+  ASSERT_EQ(restored.size(), 3u);  // a feature seen once is none
+  EXPECT_EQ(restored[2].x, 102);
 }
 
 TEST(RestoreShake, HardlyDisturbsASteadyCamera) {
