@@ -32,7 +32,8 @@ void TrackBuffer::Add(TimeNs t, const Tracks& observations, std::span<const Obse
   std::vector<std::int64_t> ids;
   for (const auto& observation : observations) ids.push_back(observation.id);
   WithdrawLone(ids);
-  before_last_ = std::exchange(last_, {t, std::move(ids)});
+  ids_before_ = std::exchange(last_ids_, std::move(ids));
+  last_ = t;
   while (from_ && t - *from_ >= static_cast<TimeNs>(kStretchesAtOnce) * kShakeStretch + delay_) {
     Release(kStretchesAtOnce);
   }
@@ -40,13 +41,13 @@ void TrackBuffer::Add(TimeNs t, const Tracks& observations, std::span<const Obse
 
 void TrackBuffer::Finish() {
   WithdrawLone({});
-  if (from_) Release(static_cast<std::size_t>((last_.t - *from_) / kShakeStretch) + 1);
+  if (from_) Release(static_cast<std::size_t>((last_ - *from_) / kShakeStretch) + 1);
 }
 
 void TrackBuffer::WithdrawLone(const std::vector<std::int64_t>& newest) {
-  for (const auto id : last_.ids) {
-    if (std::ranges::binary_search(before_last_.ids, id) || std::ranges::binary_search(newest, id)) continue;
-    withdrawn_[id] = last_.t;
+  for (const auto id : last_ids_) {
+    if (std::ranges::binary_search(ids_before_, id) || std::ranges::binary_search(newest, id)) continue;
+    withdrawn_[id] = last_;
   }
 }
 

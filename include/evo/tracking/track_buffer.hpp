@@ -39,11 +39,6 @@ class TrackBuffer {
   const Tracks& held() const { return held_; }
 
  private:
-  struct Frame {
-    TimeNs t = 0;
-    std::vector<std::int64_t> ids;  // ascending
-  };
-
   /// Those seen in the last frame, but neither in the one before it nor in the `newest`.
   void WithdrawLone(const std::vector<std::int64_t>& newest);
   /// Passes on what was seen in the first `stretches` stretches of what is held.
@@ -56,10 +51,12 @@ class TrackBuffer {
   bool restore_shake_;
   ThreadPool* pool_;
   TrackSink sink_;
-  TimeNs delay_;  // what was seen this long ago is final
-  Frame before_last_, last_;
-  std::optional<TimeNs> from_;  // what was seen before has been passed on; empty before anything is seen
-  Tracks held_;                 // from as long before as its neighbours' shake may depend on
+  TimeNs delay_;                          // what was seen this long ago is final
+  TimeNs last_ = 0;                       // stamp of the last frame
+  std::vector<std::int64_t> last_ids_;    // in it, ascending
+  std::vector<std::int64_t> ids_before_;  // in the frame before it
+  std::optional<TimeNs> from_;            // what was seen before has been passed on; empty before anything is seen
+  Tracks held_;                           // from as long before as its neighbours' shake may depend on
   std::vector<ObservedWindow> windows_;
   std::unordered_map<std::int64_t, TimeNs> withdrawn_;  // features that were seen until here at most
 };
