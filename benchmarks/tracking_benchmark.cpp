@@ -95,6 +95,16 @@ void BuildField(benchmark::State& state) {
 }
 BENCHMARK(BuildField)->ArgNames({"radius", "sigma_tenths"})->Args({12, 10})->Args({12, 25})->Args({17, 10});
 
+void OwnMoments(benchmark::State& state) {
+  const DensityMap map = MakeTemplate(GatherPatch(kPatchRadius), 12);
+  AssociationField field;
+  field.Build(map, 1.0, 0.2);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(field.OwnMoments(map, 1.1 * Eigen::Matrix2d::Identity(), kPatchRadius));
+  }
+}
+BENCHMARK(OwnMoments);
+
 void Align(benchmark::State& state) {
   const LocalEvents events = GatherPatch(kPatchRadius);
   const DensityMap map = MakeTemplate(events, 12);
@@ -159,7 +169,8 @@ void DetectCornersInImage(benchmark::State& state) {
   field.Update(
       history, kStamp, {}, [](const Eigen::Vector2d&) { return std::nullopt; }, &pool);
   const cv::Mat image = CorrectedEventImage(history, kStamp, field, options.corner_window_motion_px, options, &pool);
-  for (auto _ : state) benchmark::DoNotOptimize(DetectCorners(image, {}, 50, 0.0, options, &pool));
+  const auto wanted = [](const Eigen::Vector2d&) { return true; };
+  for (auto _ : state) benchmark::DoNotOptimize(DetectCorners(image, {}, 50, 0.0, options, &pool, wanted));
 }
 BENCHMARK(DetectCornersInImage);
 
