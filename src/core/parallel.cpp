@@ -9,7 +9,7 @@ namespace evo {
 
 namespace {
 
-constexpr std::chrono::microseconds kWatch{50};  // before a thread sleeps: to wake one takes about as long
+constexpr std::chrono::microseconds kWatch{400};  // before a thread sleeps: to wake one takes about as long
 
 /// Watches `done` for a moment.
 template <typename Condition>
