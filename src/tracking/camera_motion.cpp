@@ -26,9 +26,9 @@ FlowResidual ResidualOf(const Eigen::Vector2d& flow, const PixelGeometry& pixel,
   residual.value = across.dot(translational);
   // Turning the line by an angle takes that angle times the flow along it off the residual.
   const double along = away.dot(translational) / length;
-  residual.derivative.head<2>() =
-      -along / length *
-      (across.transpose() * pixel.by_normalized * CameraMotion::AwayByDirection(pixel) * tangents).transpose();
+  const Eigen::RowVector2d line = across.transpose() * pixel.by_normalized;
+  const Eigen::RowVector3d by_direction = line * CameraMotion::AwayByDirection(pixel);
+  residual.derivative.head<2>() = (-along / length) * (by_direction * tangents).transpose();
   residual.derivative.tail<3>() = -(across.transpose() * pixel.by_rotation).transpose();
   return residual;
 }

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "tracking/gaussian_kernel.hpp"
+#include "tracking/lanes.hpp"
 
 namespace evo {
 
@@ -15,21 +16,64 @@ namespace {
 // Where the density is nearly flat and nearly nothing the mean shift is unreliable: limit it to this many sigmas.
 constexpr float kLongestPull = 2.5f;
 
-constexpr int kBlock = 8;  // cells computed at a time
-using Block = Eigen::Array<float, kBlock, 1>;
-using BlockMap = Eigen::Map<const Block>;
+/// What pulls an event, for a plane of smoothed densities `width` cells wide, with the weights of the same cells; as
+/// many rows. Writes up to seven cells beyond the end of a row of the table.
+EVO_HOT void TabulatePulls(const float* density, const float* centre, int width, int side, float stray,
+                           float half_variance, float longest, float* table) {
+  for (int r = 1; r + 1 < side; ++r) {
+    for (int c = 0; c < side; c += kLanes) {
+      const float* const at = density + r * width + c;
+      Lanes middle, left, right, above, below, weigh;
+      Load(at, &middle);
+      Load(at - 1, &left);
+      Load(at + 1, &right);
+      Load(at - width, &above);
+      Load(at + width, &below);
+      Load(centre + r * width + c, &weigh);
+      // The mean shift variance * gradient / density, times the probability density / (density + stray).
+      const Lanes share = weigh / (middle + stray);
+      const Lanes weight = middle * share;
+      const Lanes limit = longest * weight;
+      Lanes x = half_variance * share * (right - left);
+      Lanes y = half_variance * share * (below - above);
+      x = x < -limit ? -limit : x;
+      x = x > limit ? limit : x;
+      y = y < -limit ? -limit : y;
+      y = y > limit ? limit : y;
+      StoreRows({weight, x, y, weigh}, table + 4 * (r * side + c));
+    }
+  }
+}
+
+EVO_HOT void BlendCells(float keep, const float* other, float factor, std::span<float> cells) {
+  if (!other) {
+    for (float& cell : cells) cell *= keep;
+    return;
+  }
+  for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = keep * cells[i] + factor * other[i];
+}
+
+EVO_HOT float SumOf(const float* cells, std::size_t count) {
+  Lanes sum{}, other{};
+  std::size_t i = 0;
+  for (; i + 2 * kLanes <= count; i += 2 * kLanes) {
+    Lanes one, two;
+    Load(cells + i, &one);
+    Load(cells + i + kLanes, &two);
+    sum += one;
+    other += two;
+  }
+  float total = Sum(sum + other);
+  for (; i < count; ++i) total += cells[i];
+  return total;
+}
 
 }  // namespace
 
 DensityMap::DensityMap(int radius_px, int planes)
     : radius_(radius_px), planes_(planes), cells_(static_cast<std::size_t>(planes * side() * side()), 0.0f) {}
 
-double DensityMap::Total() const {
-  Block sum = Block::Zero();
-  std::size_t i = 0;
-  for (; i + kBlock <= cells_.size(); i += kBlock) sum += BlockMap(&cells_[i]);
-  return std::accumulate(cells_.begin() + static_cast<std::ptrdiff_t>(i), cells_.end(), static_cast<double>(sum.sum()));
-}
+double DensityMap::Total() const { return SumOf(cells_.data(), cells_.size()); }
 
 double DensityMap::EffectiveCells() const {
   const double squares = std::inner_product(cells_.begin(), cells_.end(), cells_.begin(), 0.0);
@@ -39,12 +83,65 @@ double DensityMap::EffectiveCells() const {
 
 void DensityMap::Clear() { std::ranges::fill(cells_, 0.0f); }
 
-void DensityMap::Scale(float factor) {
-  for (float& cell : cells_) cell *= factor;
+namespace {
+
+EVO_HOT void VoteInto(float* cells, int radius, std::int32_t second, std::span<const float> x, std::span<const float> y,
+                      const std::int8_t* polarity) {
+  const std::ptrdiff_t side = 2 * radius + 1;
+  const auto reach = static_cast<float>(radius);
+  const auto width = static_cast<float>(side);
+  const Lanes zero{};
+  const Lanes last = zero + static_cast<float>(2 * radius);
+  const auto vote = [&](std::int32_t plane, std::int32_t cell, float w00, float w01, float w10, float w11) {
+    float* const at = cells + plane + cell;
+    at[0] += w00;
+    at[1] += w01;
+    at[side] += w10;
+    at[side + 1] += w11;
+  };
+  for (std::size_t begin = 0; begin < x.size(); begin += kLanes) {
+    const std::size_t count = std::min<std::size_t>(kLanes, x.size() - begin);
+    Lanes column{}, row{};
+    if (count == kLanes) {
+      Load(&x[begin], &column);
+      Load(&y[begin], &row);
+    } else {
+      for (int i = 0; i < kLanes; ++i) {
+        column[i] = begin + i < x.size() ? x[begin + i] : 1e6f;
+        row[i] = begin + i < x.size() ? y[begin + i] : 1e6f;
+      }
+    }
+    column += reach;
+    row += reach;
+    const LaneInts inside = (column >= zero) & (row >= zero) & (column < last) & (row < last);
+    column = inside ? column : zero;
+    row = inside ? row : zero;
+    const Lanes c = __builtin_convertvector(__builtin_convertvector(column, LaneInts), Lanes);
+    const Lanes r = __builtin_convertvector(__builtin_convertvector(row, LaneInts), Lanes);
+    const LaneInts cell = __builtin_convertvector(r * width + c, LaneInts);
+    const Lanes fx = column - c;
+    const Lanes fy = inside ? row - r : zero;
+    const Lanes rest = inside ? 1.0f - fy : zero;  // what lies outside votes with nothing
+    const Lanes w01 = fx * rest;
+    const Lanes w00 = rest - w01;
+    const Lanes w11 = fx * fy;
+    const Lanes w10 = fy - w11;
+    for (std::size_t i = 0; i < count; ++i) {
+      vote(polarity[begin + i] < 0 ? second : 0, cell[i], w00[i], w01[i], w10[i], w11[i]);
+    }
+  }
 }
 
-void DensityMap::Add(const DensityMap& other, float factor) {
-  for (std::size_t i = 0; i < cells_.size(); ++i) cells_[i] += factor * other.cells_[i];
+}  // namespace
+
+void DensityMap::Vote(std::span<const float> x, std::span<const float> y, std::span<const std::int8_t> polarity) {
+  VoteInto(cells_.data(), radius_, planes_ == 2 ? side() * side() : 0, x, y, polarity.data());
+}
+
+void DensityMap::Scale(float factor) { BlendCells(factor, nullptr, 0.0f, cells_); }
+
+void DensityMap::Blend(float keep, const DensityMap& other, float factor) {
+  BlendCells(keep, other.cells_.data(), factor, cells_);
 }
 
 DensityMap DensityMap::Warped(const Eigen::Matrix2d& linear, const Eigen::Vector2d& perspective) const {
@@ -77,117 +174,149 @@ DensityMap DensityMap::Warped(const Eigen::Matrix2d& linear, const Eigen::Vector
   return warped;
 }
 
-void AssociationField::WeighCentre() {
-  centre_.resize(static_cast<std::size_t>(side_ * side_));
-  for (int r = 0, i = 0; r < side_; ++r) {
-    for (int c = 0; c < side_; ++c, ++i) {
+void AssociationField::Weigh(Weight weight) {
+  centre_.assign(static_cast<std::size_t>(side_ * width_), 0.0f);
+  for (int r = 0; r < side_; ++r) {
+    for (int c = 0; c < side_; ++c) {
       const double distance = std::hypot(r - radius_, c - radius_) / radius_;
-      const double weight = std::max(0.0, 1.0 - distance * distance);
-      centre_[i] = static_cast<float>(weight * weight);
+      const double by_distance = std::max(0.0, 1.0 - distance * distance);
+      const bool at_edge = r == 0 || c == 0 || r == side_ - 1 || c == side_ - 1;
+      centre_[static_cast<std::size_t>(r * width_ + c)] = at_edge ? 0.0f
+                                                          : weight == Weight::kEven
+                                                              ? 1.0f
+                                                              : static_cast<float>(by_distance * by_distance);
     }
   }
 }
 
-void AssociationField::Convolve(const float* in, std::ptrdiff_t step, float* out) const {
-  const auto reach = static_cast<std::ptrdiff_t>(kernel_.size()) - 1;
-  for (int c = 0; c < width_; c += kBlock, in += kBlock, out += kBlock) {
-    Block sum = kernel_[0] * BlockMap(in);
-    for (std::ptrdiff_t i = 1; i <= reach; ++i) sum += kernel_[i] * (BlockMap(in - i * step) + BlockMap(in + i * step));
-    Eigen::Map<Block>{out} = sum;
-  }
-}
-
 void AssociationField::Smooth(const float* plane) {
-  const int reach = static_cast<int>(kernel_.size()) - 1;
-  const int n = side_;
-  const auto stride = static_cast<std::ptrdiff_t>(width_);
-  row_.assign(static_cast<std::size_t>(width_ + 2 * reach), 0.0f);
-  rows_.resize(static_cast<std::size_t>((n + 2 * reach) * width_));
-  std::fill_n(rows_.begin(), reach * stride, 0.0f);
-  std::fill_n(rows_.end() - reach * stride, reach * stride, 0.0f);
-  for (int r = 0; r < n; ++r) {
-    std::copy_n(plane + r * n, n, row_.begin() + reach);
-    Convolve(row_.data() + reach, 1, rows_.data() + (r + reach) * stride);
-  }
-  smooth_.resize(static_cast<std::size_t>(n * width_));
-  for (int r = 0; r < n; ++r) Convolve(rows_.data() + (r + reach) * stride, stride, smooth_.data() + r * stride);
+  // Rows run into one another, but only within the empty margin between them.
+  for (int r = 0; r < side_; ++r) std::copy_n(plane + r * side_, side_, plane_.data() + (margin_ + r) * width_);
+  const std::ptrdiff_t first = margin_ * width_;
+  ConvolveCells(kernel_, plane_.data() + first, 1, side_ * width_, rows_.data() + first);
+  ConvolveCells(kernel_, rows_.data() + first, width_, side_ * width_, smooth_.data() + first);
 }
 
-void AssociationField::Build(const DensityMap& map, double sigma_px, double outlier_share) {
-  radius_ = map.radius();
-  side_ = map.side();
-  sigma_px_ = sigma_px;
-  const int n = side_;
-  width_ = (n + kBlock - 1) / kBlock * kBlock;
-  kernel_.resize(static_cast<std::size_t>(std::min(radius_, GaussianReach(sigma_px))) + 1);
-  FillGaussianKernel(sigma_px, kernel_);
-  const auto cells = static_cast<std::size_t>(map.planes() * n * n);
-  if (table_.size() != cells) {
-    table_.assign(cells, Pull::Zero());  // the cells at the edge stay zero
-    WeighCentre();
+void AssociationField::Build(const DensityMap& map, double sigma_px, double outlier_share, Weight weight) {
+  const auto reach = std::min(map.radius(), GaussianReach(sigma_px));
+  const auto cells = static_cast<std::size_t>(map.planes() * map.side() * map.side());
+  if (map.side() != side_ || reach != margin_ - 1 || table_.size() < cells) {
+    radius_ = map.radius();
+    side_ = map.side();
+    margin_ = reach + 1;
+    width_ = (side_ + margin_ + kLanes - 1) / kLanes * kLanes;
+    const auto padded = static_cast<std::size_t>((side_ + 2 * margin_) * width_);
+    plane_.assign(padded, 0.0f);
+    rows_.assign(padded, 0.0f);
+    smooth_.assign(padded, 0.0f);
+    // What is at the edge stays zero, and what is read or written beyond the last cell.
+    table_.assign(cells + static_cast<std::size_t>(side_ + kLanes), Pull::Zero());
+    Weigh(weight);
   }
-  const double mean_density = map.Total() / (map.planes() * n * n);
+  sigma_px_ = sigma_px;
+  kernel_.resize(static_cast<std::size_t>(reach) + 1);
+  FillGaussianKernel(sigma_px, kernel_);
+  const double mean_density = map.Total() / static_cast<double>(cells);
   const auto stray = static_cast<float>(std::max(1e-12, outlier_share * mean_density));
   const auto half_variance = static_cast<float>(0.5 * sigma_px * sigma_px);
   const auto longest = static_cast<float>(kLongestPull * sigma_px);
   for (int p = 0; p < map.planes(); ++p) {
     Smooth(map.plane(p));
-    for (int r = 1; r + 1 < n; ++r) {
-      const float* centre = centre_.data() + r * n;
-      const float* density = smooth_.data() + r * width_;
-      float* pull = table_[(p * n + r) * n].data();
-      for (int c = 1; c + 1 < n; ++c) {
-        // The mean shift variance * gradient / density, times the probability density / (density + stray).
-        const float share = centre[c] / (density[c] + stray);
-        const float weight = density[c] * share;
-        const float limit = longest * weight;
-        const float x = half_variance * share * (density[c + 1] - density[c - 1]);
-        const float y = half_variance * share * (density[c + width_] - density[c - width_]);
-        pull[4 * c] = weight;
-        pull[4 * c + 1] = std::clamp(x, -limit, limit);
-        pull[4 * c + 2] = std::clamp(y, -limit, limit);
-        pull[4 * c + 3] = centre[c];
-      }
-    }
+    TabulatePulls(smooth_.data() + margin_ * width_, centre_.data(), width_, side_, stray, half_variance, longest,
+                  table_[static_cast<std::size_t>(p * side_ * side_)].data());
   }
 }
 
+namespace {
+
+/// The sums of vote x pull x (1, u, v) over the cells of a plane that lie in the patch.
+struct PullMoments {
+  FourLanes one{}, u{}, v{};
+};
+
+/// Columns [begin, end) of a map, relative to its centre.
+struct Columns {
+  explicit Columns(int radius) : limit(radius + 1), begin(-radius), end(radius + 1) {}
+
+  /// To those in which |a u + b| <= reach.
+  EVO_INLINE void Restrict(float a, float b, float reach) {
+    if (a == 0.0f) {
+      if (std::abs(b) > reach) end = begin;
+      return;
+    }
+    const float one = (reach - b) / a;
+    const float other = (-reach - b) / a;
+    const auto farthest = static_cast<float>(limit);
+    // Positive numbers are rounded by cutting off.
+    const int first = limit - static_cast<int>(farthest - std::clamp(std::min(one, other), -farthest, farthest));
+    const int last = static_cast<int>(std::clamp(std::max(one, other), -farthest, farthest) + farthest) - limit;
+    begin = std::max(begin, first);
+    end = std::min(end, last + 1);
+  }
+
+  int limit;
+  int begin, end;
+};
+
+EVO_HOT void AddMoments(const float* votes, const float* pulls, int radius, const Eigen::Matrix2f& linear, float reach,
+                        PullMoments* moments) {
+  const int side = 2 * radius + 1;
+  for (int r = 0; r < side; ++r) {
+    const auto v = static_cast<float>(r - radius);
+    Columns columns(radius);
+    columns.Restrict(linear(0, 0), linear(0, 1) * v, reach);
+    columns.Restrict(linear(1, 0), linear(1, 1) * v, reach);
+    const int begin = r * side + radius + columns.begin;
+    const int end = r * side + radius + columns.end;
+    Lanes one{}, by_u{}, u = Lanes{} + static_cast<float>(columns.begin);
+    u += Lanes{0, 0, 0, 0, 1, 1, 1, 1};
+    int i = begin;
+    for (; i + 1 < end; i += 2) {
+      Lanes pull, vote;
+      Load(pulls + 4 * i, &pull);
+      Join(FourLanes{} + votes[i], FourLanes{} + votes[i + 1], &vote);
+      pull *= vote;
+      one += pull;
+      by_u += u * pull;
+      u += 2.0f;
+    }
+    if (i < end) {
+      Lanes pull, vote;
+      Load(pulls + 4 * i, &pull);
+      Join(FourLanes{} + votes[i], FourLanes{}, &vote);
+      pull *= vote;
+      one += pull;
+      by_u += u * pull;
+    }
+    FourLanes here, next, here_by_u, next_by_u;
+    Split(one, &here, &next);
+    Split(by_u, &here_by_u, &next_by_u);
+    moments->one += here + next;
+    moments->u += here_by_u + next_by_u;
+    moments->v += v * (here + next);
+  }
+}
+
+}  // namespace
+
 Eigen::Matrix<double, 2, 3> AssociationField::OwnMoments(const DensityMap& map, const Eigen::Matrix2d& linear,
                                                          double patch_radius_px) const {
-  const Eigen::Matrix2f l = linear.cast<float>();
-  const auto reach = static_cast<float>(patch_radius_px);
-  Eigen::Array4f sum = Eigen::Array4f::Zero(), sum_u = Eigen::Array4f::Zero(), sum_v = Eigen::Array4f::Zero();
-  // The cells that can be inside.
-  const Eigen::Vector2d farthest = 1.01 * patch_radius_px * linear.inverse().cwiseAbs().rowwise().sum();
-  const int columns = farthest.x() < radius_ ? static_cast<int>(farthest.x()) : radius_;
-  const int rows = farthest.y() < radius_ ? static_cast<int>(farthest.y()) : radius_;
+  PullMoments m;
   for (int p = 0; p < map.planes(); ++p) {
-    const float* votes = map.plane(p);
-    const Pull* pulls = table_.data() + p * side_ * side_;
-    for (int r = radius_ - rows; r <= radius_ + rows; ++r) {
-      const auto v = static_cast<float>(r - radius_);
-      int i = r * side_ + radius_ - columns;
-      for (int c = radius_ - columns; c <= radius_ + columns; ++c, ++i) {
-        const auto u = static_cast<float>(c - radius_);
-        if (std::abs(l(0, 0) * u + l(0, 1) * v) > reach || std::abs(l(1, 0) * u + l(1, 1) * v) > reach) continue;
-        const Pull pull = votes[i] * pulls[i];
-        sum += pull;
-        sum_u += u * pull;
-        sum_v += v * pull;
-      }
-    }
+    AddMoments(map.plane(p), table_[static_cast<std::size_t>(p * side_ * side_)].data(), radius_, linear.cast<float>(),
+               static_cast<float>(patch_radius_px), &m);
   }
-  if (!(sum[0] > 0.0f)) return Eigen::Matrix<double, 2, 3>::Zero();
+  if (!(m.one[0] > 0.0f)) return Eigen::Matrix<double, 2, 3>::Zero();
   Eigen::Matrix<double, 2, 3> moments;
-  moments << sum[1], sum_u[1], sum_v[1], sum[2], sum_u[2], sum_v[2];
-  return moments / sum[0];
+  moments << m.one[1], m.u[1], m.v[1], m.one[2], m.u[2], m.v[2];
+  return moments / m.one[0];
 }
 
 Eigen::Matrix2d AssociationField::Information(const DensityMap& map, const AssociationField& other) const {
   Eigen::Array4f sum = Eigen::Array4f::Zero();  // xx, xy, yx, yy
   float weight = 0.0f;
   const float* votes = map.plane(0);
-  for (std::size_t i = 0; i < table_.size(); ++i) {
+  for (int i = 0; i < map.planes() * side_ * side_; ++i) {
     const Pull& one = table_[i];
     const Pull& two = other.table_[i];
     if (!(one[3] > 0.0f)) continue;

@@ -3,6 +3,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "tracking/lanes.hpp"
+
 namespace evo {
 
 namespace {
@@ -15,42 +17,83 @@ constexpr double kWidest = 8.0;        // the first loss over the last
 constexpr int kIterations = 6;
 constexpr int kNearest = 5;  // samples asked for what is usual
 
-struct Neighbour {
-  Eigen::Vector2d away;  // px
-  double nearer;         // its inverse depth over that of the centre, less 1
-  double weight;
+/// Of samples near a place.
+struct Neighbours {
+  std::vector<float> x, y;     // px from it
+  std::vector<float> nearer;   // its inverse depth over that of the place, less 1
+  std::vector<float> weights;  // from 0 far away to 1
+
+  void Clear() {
+    for (auto* column : {&x, &y, &nearer, &weights}) column->clear();
+  }
+  void Add(const Eigen::Vector2d& away, double how_much_nearer, double weight) {
+    x.push_back(static_cast<float>(away.x()));
+    y.push_back(static_cast<float>(away.y()));
+    nearer.push_back(static_cast<float>(how_much_nearer));
+    weights.push_back(static_cast<float>(weight));
+  }
+  /// Fills up the last eight with some of no weight.
+  void Pad() {
+    while (x.size() % kLanes != 0) Add({0.0, 0.0}, 0.0, 0.0);
+  }
 };
+
+/// Of the weighted least squares of a slope.
+struct SlopeSums {
+  float xx, xy, yy, x, y, support;
+};
+
+EVO_HOT void SumSlopes(const Neighbours& neighbours, const Eigen::Vector2f& slope, float width, SlopeSums* sums) {
+  Lanes xx{}, xy{}, yy{}, sum_x{}, sum_y{}, support{};
+  const float slope_x = slope.x();
+  const float slope_y = slope.y();
+  const Lanes zero{};
+  for (std::size_t i = 0; i < neighbours.x.size(); i += kLanes) {
+    Lanes x, y, nearer, weight;
+    Load(&neighbours.x[i], &x);
+    Load(&neighbours.y[i], &y);
+    Load(&neighbours.nearer[i], &nearer);
+    Load(&neighbours.weights[i], &weight);
+    const Lanes usual = width * (1.0f + (nearer > zero ? nearer : zero));
+    const Lanes residual = (nearer - slope_x * x - slope_y * y) / usual;
+    const Lanes w = weight / (1.0f + residual * residual);
+    const Lanes wx = w * x;
+    const Lanes wy = w * y;
+    xx += wx * x;
+    xy += wx * y;
+    yy += wy * y;
+    sum_x += wx * nearer;
+    sum_y += wy * nearer;
+    support += w;
+  }
+  *sums = {Sum(xx), Sum(xy), Sum(yy), Sum(sum_x), Sum(sum_y), Sum(support)};
+}
 
 }  // namespace
 
 std::optional<Eigen::Vector2d> SurfaceSlope(const std::vector<DepthSample>& samples, const DepthSample& at) {
   if (!(at.inverse_depth > 0.0)) return std::nullopt;
-  thread_local std::vector<Neighbour> neighbours;
-  neighbours.clear();
+  thread_local Neighbours neighbours;
+  neighbours.Clear();
   for (const auto& sample : samples) {
     const Eigen::Vector2d away = sample.position - at.position;
     const double distance = away.squaredNorm() / (kReachPx * kReachPx);
     if (distance >= 1.0 || distance == 0.0 || !(sample.inverse_depth > 0.0)) continue;
-    neighbours.push_back({away, sample.inverse_depth / at.inverse_depth - 1.0, 1.0 - distance});
+    neighbours.Add(away, sample.inverse_depth / at.inverse_depth - 1.0, 1.0 - distance);
   }
+  neighbours.Pad();
+  constexpr double kPrior = kUsualError * kUsualError / (kUsualSlope * kUsualSlope);
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();
-  double support = 0.0;
+  SlopeSums s{};
   double width = kWidest * kUsualError;
   for (int i = 0; i < kIterations; ++i) {
-    Eigen::Matrix2d normal = kUsualError * kUsualError / (kUsualSlope * kUsualSlope) * Eigen::Matrix2d::Identity();
-    Eigen::Vector2d right = Eigen::Vector2d::Zero();
-    support = 0.0;
-    for (const auto& [away, nearer, weight] : neighbours) {
-      const double residual = (nearer - slope.dot(away)) / (width * (1.0 + std::max(0.0, nearer)));
-      const double w = weight / (1.0 + residual * residual);
-      normal += w * away * away.transpose();
-      right += w * nearer * away;
-      support += w;
-    }
-    slope = normal.inverse() * right;
+    SumSlopes(neighbours, slope.cast<float>(), static_cast<float>(width), &s);
+    Eigen::Matrix2d normal;
+    normal << s.xx + kPrior, s.xy, s.xy, s.yy + kPrior;
+    slope = normal.inverse() * Eigen::Vector2d(s.x, s.y);
     width = std::max(0.5 * width, kUsualError);
   }
-  if (support < kLeastSupport) return std::nullopt;
+  if (s.support < kLeastSupport) return std::nullopt;
   return at.inverse_depth * slope;
 }
 

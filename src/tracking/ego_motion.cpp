@@ -23,7 +23,8 @@ constexpr double kSmallestErrorPxS = 2.0;   // and besides
 constexpr double kLargestError = 0.2;       // of the flow of a resting point, as a share of it,
 constexpr double kLargestErrorPxS = 15.0;   // and besides
 constexpr double kLargestCost = 0.5;        // of a motion that explains the flows: mean of the robust loss, at most 1
-constexpr double kGoodCost = 0.2;           // beyond this another minimum is looked for
+constexpr double kGoodCost = 0.2;           // beyond this another minimum is looked for,
+constexpr double kFairCost = 0.4;           // and beyond this in all directions
 constexpr double kCorrected = 0.7;          // share of a flow's error that is corrected, as the motion has errors too,
 constexpr double kLargestCorrection = 4.0;  // if it is a few of its usual errors: else the point does not rest
 constexpr double kNearPx = 10.0;            // closer to where the camera heads than this, slopes are not seen
@@ -64,11 +65,12 @@ double EgoMotion::Refine(const std::vector<FlowSample>& features, const std::vec
       const double usual = UsualError(features[i].flow);
       const double residual = left.value / usual;
       const double weight = 1.0 / (1.0 + residual * residual);
-      cost += (1.0 - weight) / static_cast<double>(features.size());
+      cost += 1.0 - weight;
       const CameraMotion::Step row = left.derivative / usual;
       normal += weight * row * row.transpose();
       right -= weight * residual * row;
     }
+    cost /= static_cast<double>(features.size());
     if (iteration == iterations) {
       covariance_ = kAlike * by_step * normal.inverse() * by_step.transpose();
       break;
@@ -91,19 +93,23 @@ void EgoMotion::Update(const std::vector<FlowSample>& features, double step_s) {
   for (const auto& feature : features) pixels.push_back(lens_.At(feature.position));
 
   std::vector<Eigen::Vector3d> starts{Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY()};
-  if (was_known) starts.insert(starts.begin(), motion_.direction);
+  if (was_known) {
+    std::ranges::rotate(starts, starts.begin() + next_start_++ % 3);
+    starts.insert(starts.begin(), motion_.direction);
+  }
   const Eigen::Vector3d turn_rate = was_known ? motion_.turn_rate : Eigen::Vector3d::Zero();
   double best_cost = kLargestCost;
   CameraMotion best{starts[0], turn_rate};
-  for (const auto& start : starts) {
-    motion_ = {start, turn_rate};
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    motion_ = {starts[i], turn_rate};
     const double cost = Refine(features, pixels, {}, kIterations);
     if (cost < best_cost) {
       best_cost = cost;
       best = motion_;
       known_ = true;
     }
-    if (was_known && best_cost < kGoodCost) break;
+    // For a motion that goes on explaining the flows fairly, another minimum is looked for in one direction a frame.
+    if (was_known && best_cost < (i == 0 ? kGoodCost : kFairCost)) break;
   }
   motion_ = best;
   Orient(features, pixels);

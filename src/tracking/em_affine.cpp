@@ -5,11 +5,14 @@
 #include <cmath>
 #include <vector>
 
+#include "tracking/event_lanes.hpp"
+
 namespace evo {
 
 namespace {
 
-constexpr double kSmallestStep = 0.01;  // px, of the offset; a few times that at the patch's and the window's edge
+constexpr double kSmallestStep = 0.02;  // px, of the offset; a few times that at the patch's and the window's edge
+constexpr double kSlowest = 0.7;        // a step over the one before it
 // The template has an edge of some width itself, so a plain M step closes only part of the gap.
 constexpr double kOverRelaxation = 1.5;
 constexpr float kFarthest = 0.2f;  // depth of the patch's centre over that of its farthest points
@@ -18,93 +21,133 @@ using Design = Eigen::Matrix4d;                  // over (1, dt / half window, u
 using Correction = Eigen::Matrix<double, 4, 2>;  // the same rows, for x and y
 
 struct Moments {
-  Design normal = Design::Zero();
-  Correction pull = Correction::Zero();
+  Design normal;
+  Correction pull;
   double weight = 0.0;
   double squares = 0.0;
   double all = 0.0;  // weight if no event were stray
 };
 
+/// A PatchMotion that events are taken back by.
+struct InverseMotion {
+  explicit InverseMotion(const PatchMotion& motion)
+      : inverse(motion.linear.inverse().cast<float>()),
+        rate(motion.rate.cast<float>()),
+        offset(motion.offset.cast<float>()),
+        flow(motion.flow.cast<float>()),
+        perspective(motion.perspective.cast<float>()),
+        bend(motion.bend.cast<float>()) {}
+
+  /// Of one event or of many.
+  template <typename Float>
+  EVO_INLINE void ToTemplate(const Float& event_x, const Float& event_y, const Float& dt, Float* u, Float* v) const {
+    const Float x = event_x - offset.x() - flow.x() * dt;
+    const Float y = event_y - offset.y() - flow.y() * dt;
+    const Float bent = bend.x() * x + bend.y() * y;
+    const Float x0 = x - dt * (rate(0, 0) * x + rate(0, 1) * y + bent * x);
+    const Float y0 = y - dt * (rate(1, 0) * x + rate(1, 1) * y + bent * y);
+    const Float a = inverse(0, 0) * x0 + inverse(0, 1) * y0;
+    const Float b = inverse(1, 0) * x0 + inverse(1, 1) * y0;
+    const Float depth = 1.0f - perspective.x() * a - perspective.y() * b;
+    const Float nearer = 1.0f / (depth > kFarthest ? depth : Float{} + kFarthest);
+    *u = a * nearer;
+    *v = b * nearer;
+  }
+
+  Eigen::Matrix2f inverse, rate;
+  Eigen::Vector2f offset, flow, perspective, bend;
+};
+
+/// Sums over the events, of pull x regressors and of weight x regressors x regressors.
+struct MomentSums {
+  float w, wt, wu, wv, wtt, wtu, wtv, wuu, wuv, wvv;
+  float x, xt, xu, xv, y, yt, yu, yv;
+  float squares, all;
+};
+
+EVO_HOT void SumMoments(const LocalEvents& events, const InverseMotion& motion, const AssociationField& field,
+                        int planes, float per_window, float per_radius, MomentSums* sums) {
+  Lanes w{}, wt{}, wu{}, wv{}, wtt{}, wtu{}, wtv{}, wuu{}, wuv{}, wvv{};
+  Lanes sum_x{}, xt{}, xu{}, xv{}, sum_y{}, yt{}, yu{}, yv{}, squares{}, all{};
+  const std::int32_t second = planes == 2 ? field.side() * field.side() : 0;
+  const Lanes nothing = Lanes{} + 1e-30f;
+  for (std::size_t begin = 0; begin < events.size(); begin += kLanes) {
+    EventLanes event;
+    Load(events, begin, second, &event);
+    Lanes u, v;
+    motion.ToTemplate(event.x, event.y, event.dt, &u, &v);
+    LaneColumns pull;
+    PullsAt(field, u, v, event.plane, &pull);
+    const auto& [inlier, pull_x, pull_y, centre] = pull;
+    const Lanes t = event.dt * per_window;
+    u *= per_radius;
+    v *= per_radius;
+    const Lanes pt = inlier * t;
+    const Lanes pu = inlier * u;
+    const Lanes pv = inlier * v;
+    w += inlier;
+    wt += pt;
+    wu += pu;
+    wv += pv;
+    wtt += pt * t;
+    wtu += pt * u;
+    wtv += pt * v;
+    wuu += pu * u;
+    wuv += pu * v;
+    wvv += pv * v;
+    sum_x += pull_x;
+    xt += pull_x * t;
+    xu += pull_x * u;
+    xv += pull_x * v;
+    sum_y += pull_y;
+    yt += pull_y * t;
+    yu += pull_y * u;
+    yv += pull_y * v;
+    squares += (pull_x * pull_x + pull_y * pull_y) / (inlier > nothing ? inlier : nothing);
+    all += centre;
+  }
+  *sums = {Sum(w),     Sum(wt), Sum(wu), Sum(wv), Sum(wtt),   Sum(wtu), Sum(wtv), Sum(wuu), Sum(wuv),     Sum(wvv),
+           Sum(sum_x), Sum(xt), Sum(xu), Sum(xv), Sum(sum_y), Sum(yt),  Sum(yu),  Sum(yv),  Sum(squares), Sum(all)};
+}
+
 Moments Expect(const LocalEvents& events, const AssociationField& field, int planes, const AlignmentOptions& options,
                const PatchMotion& motion) {
-  thread_local TemplatePoints points;
-  points.Update(events, motion);
-  const auto per_window = static_cast<float>(1.0 / options.half_window_s);
-  const auto per_radius = static_cast<float>(1.0 / options.patch_radius_px);
-  using Row = Eigen::Array4f;
-  // Added up, since four scalars stored and loaded as one row stall the processor.
-  const Row one(1.0f, 0.0f, 0.0f, 0.0f), in_window(0.0f, per_window, 0.0f, 0.0f);
-  const Row in_width(0.0f, 0.0f, per_radius, 0.0f), in_height(0.0f, 0.0f, 0.0f, per_radius);
-  Row n0 = Row::Zero(), n1 = Row::Zero(), n2 = Row::Zero(), n3 = Row::Zero(), x = Row::Zero(), y = Row::Zero();
-  float squares = 0.0f, all = 0.0f;
-  for (std::size_t i = 0; i < events.size(); ++i) {
-    const float u = points.u[i];
-    const float v = points.v[i];
-    const AssociationField::Pull pull = field.At(u, v, planes == 2 && events.polarity[i] < 0 ? 1 : 0);
-    all += pull[3];
-    if (!(pull[0] > 0.0f)) continue;
-    const Row regressors = one + events.dt[i] * in_window + u * in_width + v * in_height;
-    const Row weighted = pull[0] * regressors;
-    n0 += weighted;
-    n1 += regressors[1] * weighted;
-    n2 += regressors[2] * weighted;
-    n3 += regressors[3] * weighted;
-    x += pull[1] * regressors;
-    y += pull[2] * regressors;
-    squares += (pull[1] * pull[1] + pull[2] * pull[2]) / pull[0];
-  }
+  MomentSums s;
+  SumMoments(events, InverseMotion(motion), field, planes, static_cast<float>(1.0 / options.half_window_s),
+             static_cast<float>(1.0 / options.patch_radius_px), &s);
   Moments moments;
-  moments.normal << n0.matrix().cast<double>(), n1.matrix().cast<double>(), n2.matrix().cast<double>(),
-      n3.matrix().cast<double>();
-  moments.pull << x.matrix().cast<double>(), y.matrix().cast<double>();
-  moments.weight = n0[0];
-  moments.squares = squares;
-  moments.all = all;
+  moments.normal << s.w, s.wt, s.wu, s.wv, s.wt, s.wtt, s.wtu, s.wtv, s.wu, s.wtu, s.wuu, s.wuv, s.wv, s.wtv, s.wuv,
+      s.wvv;
+  moments.pull << s.x, s.y, s.xt, s.yt, s.xu, s.yu, s.xv, s.yv;
+  moments.weight = s.w;
+  moments.squares = s.squares;
+  moments.all = s.all;
   return moments;
 }
 
 }  // namespace
 
 void TemplatePoints::Update(const LocalEvents& events, const PatchMotion& motion) {
-  const Eigen::Matrix2f inverse = motion.linear.inverse().cast<float>();
-  const Eigen::Vector2f offset = motion.offset.cast<float>();
-  const Eigen::Vector2f flow = motion.flow.cast<float>();
-  const Eigen::Vector2f perspective = motion.perspective.cast<float>();
-  const Eigen::Matrix2f rate = motion.rate.cast<float>();
-  const Eigen::Vector2f bend = motion.bend.cast<float>();
+  const InverseMotion inverse(motion);
   u.resize(events.size());
   v.resize(events.size());
-  float* const out_u = u.data();
-  float* const out_v = v.data();
   // The compiler vectorises this loop.
   for (std::size_t i = 0; i < events.size(); ++i) {
-    const float dt = events.dt[i];
-    const float x = events.x[i] - offset.x() - flow.x() * dt;
-    const float y = events.y[i] - offset.y() - flow.y() * dt;
-    const float bent = bend.x() * x + bend.y() * y;
-    const float x0 = x - dt * (rate(0, 0) * x + rate(0, 1) * y + bent * x);
-    const float y0 = y - dt * (rate(1, 0) * x + rate(1, 1) * y + bent * y);
-    const float a = inverse(0, 0) * x0 + inverse(0, 1) * y0;
-    const float b = inverse(1, 0) * x0 + inverse(1, 1) * y0;
-    const float depth = 1.0f - perspective.x() * a - perspective.y() * b;
-    const float nearer = 1.0f / (depth > kFarthest ? depth : kFarthest);
-    out_u[i] = a * nearer;
-    out_v[i] = b * nearer;
+    inverse.ToTemplate(events.x[i], events.y[i], events.dt[i], &u[i], &v[i]);
   }
 }
 
 void Accumulate(const LocalEvents& events, const PatchMotion& motion, DensityMap* map) {
   thread_local TemplatePoints points;
   points.Update(events, motion);
-  for (std::size_t i = 0; i < events.size(); ++i) {
-    map->Vote(points.u[i], points.v[i], map->PlaneOf(events.polarity[i]), 1.0f);
-  }
+  map->Vote(points.u, points.v, events.polarity);
 }
 
 AlignmentQuality AlignToTemplate(const LocalEvents& events, const AssociationField& field, int planes,
                                  const AlignmentOptions& options, bool with_linear, PatchMotion* motion) {
   const Eigen::Vector4d prior(0.0, options.flow_prior, options.affine_prior, options.affine_prior);
   Correction moved = Correction::Zero();  // so far, which the priors pull back
+  double last_length = 0.0;               // of a step
   AlignmentQuality quality;
   for (int iteration = 0; iteration < options.iterations; ++iteration) {
     Moments moments = Expect(events, field, planes, options, *motion);
@@ -128,6 +171,12 @@ AlignmentQuality AlignToTemplate(const LocalEvents& events, const AssociationFie
     }
     if (!step.allFinite()) return {};
     step *= kOverRelaxation;
+    const double length = step.norm();
+    const bool settled =
+        (motion->linear * step.row(0).transpose()).norm() < kSmallestStep && length < 3.0 * kSmallestStep;
+    // Steps shrink geometrically, so the last goes as far as all that would follow it.
+    if (settled && iteration > 0) step /= 1.0 - std::min(length / last_length, kSlowest);
+    last_length = length;
     moved += step;
 
     // Events should appear at u + b + g dt + M u, so the template lies where the inverse of that puts it.
@@ -136,8 +185,7 @@ AlignmentQuality AlignToTemplate(const LocalEvents& events, const AssociationFie
     motion->linear = motion->linear * (Eigen::Matrix2d::Identity() + m / options.patch_radius_px).inverse();
     motion->offset -= motion->linear * step.row(0).transpose();
     motion->flow -= motion->linear * step.row(1).transpose() / options.half_window_s;
-    quality.last_step_px = (motion->linear * step.row(0).transpose()).norm();
-    if (quality.last_step_px < kSmallestStep && step.norm() < 3.0 * kSmallestStep) break;
+    if (settled) break;
   }
   return quality;
 }

@@ -2,6 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "evo/tracking/density_map.hpp"
+#include "tracking/event_lanes.hpp"
 
 namespace evo {
 
@@ -17,53 +23,88 @@ double SigmaInCells(const FlowOptions& options) {
   return std::sqrt(std::max(options.sigma_px * options.sigma_px - added, kSmallestVariance)) / options.cell_px;
 }
 
+/// Kept by each thread for each size of patch.
+struct Workspace {
+  DensityMap map;
+  AssociationField field;
+  std::vector<float> u, v;  // cells
+};
+
+Workspace& WorkspaceOf(int radius, int planes) {
+  thread_local std::map<std::pair<int, int>, Workspace> workspaces;
+  const auto known = workspaces.find({radius, planes});
+  if (known != workspaces.end()) return known->second;
+  return workspaces.emplace(std::pair(radius, planes), Workspace{DensityMap(radius, planes), {}, {}, {}}).first->second;
+}
+
+/// Along `flow` to the reference instant.
+void Propagate(const LocalEvents& events, const Eigen::Vector2f& flow, float per_cell, std::vector<float>* u,
+               std::vector<float>* v) {
+  u->resize(events.size());
+  v->resize(events.size());
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    (*u)[i] = per_cell * (events.x[i] - flow.x() * events.dt[i]);
+    (*v)[i] = per_cell * (events.y[i] - flow.y() * events.dt[i]);
+  }
+}
+
+/// Sums over the events, of weights and pulls (cells) and of their products with dt.
+struct PullSums {
+  float w, wt, wtt, x, xt, y, yt;
+};
+
+EVO_HOT void SumPulls(const LocalEvents& events, const Eigen::Vector2f& flow, float per_cell,
+                      const AssociationField& field, int planes, PullSums* sums) {
+  Lanes w{}, wt{}, wtt{}, sum_x{}, xt{}, sum_y{}, yt{};
+  const std::int32_t second = planes == 2 ? field.side() * field.side() : 0;
+  const float vx = flow.x();
+  const float vy = flow.y();
+  for (std::size_t begin = 0; begin < events.size(); begin += kLanes) {
+    EventLanes event;
+    Load(events, begin, second, &event);
+    LaneColumns pull;
+    PullsAt(field, per_cell * (event.x - vx * event.dt), per_cell * (event.y - vy * event.dt), event.plane, &pull);
+    const auto& [inlier, pull_x, pull_y, weight] = pull;
+    const Lanes pt = inlier * event.dt;
+    w += inlier;
+    wt += pt;
+    wtt += pt * event.dt;
+    sum_x += pull_x;
+    xt += pull_x * event.dt;
+    sum_y += pull_y;
+    yt += pull_y * event.dt;
+  }
+  *sums = {Sum(w), Sum(wt), Sum(wtt), Sum(sum_x), Sum(xt), Sum(sum_y), Sum(yt)};
+}
+
 }  // namespace
 
 FlowEstimator::FlowEstimator(int radius_px, int planes, const FlowOptions& options)
     : options_(options),
-      by_polarity_(planes == 2),
-      density_(static_cast<int>(std::ceil(radius_px / options.cell_px)), planes, SigmaInCells(options)) {}
+      sigma_(SigmaInCells(options)),
+      radius_(static_cast<int>(std::ceil(radius_px / options.cell_px))),
+      planes_(planes) {}
 
-void FlowEstimator::Propagate(const LocalEvents& events, const Eigen::Vector2d& flow) {
+double FlowEstimator::Refine(const LocalEvents& events, double half_window_s, Eigen::Vector2d* flow) const {
+  Workspace& w = WorkspaceOf(radius_, planes_);
   const auto per_cell = static_cast<float>(1.0 / options_.cell_px);
-  const Eigen::Array2f v = flow.cast<float>();
-  u_.resize(events.size());
-  v_.resize(events.size());
-  for (std::size_t i = 0; i < events.size(); ++i) {
-    u_[i] = per_cell * (events.x[i] - v.x() * events.dt[i]);
-    v_[i] = per_cell * (events.y[i] - v.y() * events.dt[i]);
-  }
-}
-
-double FlowEstimator::Refine(const LocalEvents& events, double half_window_s, Eigen::Vector2d* flow) {
-  const auto plane = [&](std::size_t i) { return by_polarity_ && events.polarity[i] < 0 ? 1 : 0; };
   double share = 0.0;
   for (int iteration = 0; iteration < options_.iterations; ++iteration) {
-    Propagate(events, *flow);
-    density_.Clear();
-    for (std::size_t i = 0; i < events.size(); ++i) density_.Vote(u_[i], v_[i], plane(i));
-    density_.Smooth(options_.outlier_share);
+    Propagate(events, flow->cast<float>(), per_cell, &w.u, &w.v);
+    w.map.Clear();
+    w.map.Vote(w.u, w.v, events.polarity);
+    w.field.Build(w.map, sigma_, options_.outlier_share, AssociationField::Weight::kEven);
 
     // Regression of the pull on time with an offset: the events of a window need not be centred in time.
-    float sum = 0.0f, sum_x = 0.0f, sum_y = 0.0f, sum_t = 0.0f, sum_tt = 0.0f, sum_tx = 0.0f, sum_ty = 0.0f;
-    for (std::size_t i = 0; i < events.size(); ++i) {
-      const EventDensity::Pull pull = density_.At(u_[i], v_[i], plane(i));
-      const float t = events.dt[i];
-      sum += pull.weight;
-      sum_x += pull.x;
-      sum_y += pull.y;
-      sum_t += t * pull.weight;
-      sum_tt += t * t * pull.weight;
-      sum_tx += t * pull.x;
-      sum_ty += t * pull.y;
-    }
-    if (!(sum > 0.0f)) return 0.0;
-    const float mean_t = sum_t / sum;
-    const float spread = sum_tt - mean_t * sum_t;
+    PullSums s;
+    SumPulls(events, flow->cast<float>(), per_cell, w.field, planes_, &s);
+    if (!(s.w > 0.0f)) return 0.0;
+    const float mean_t = s.wt / s.w;
+    const float spread = s.wtt - mean_t * s.wt;
     if (!(spread > 0.0f)) return 0.0;
-    share = static_cast<double>(sum) / static_cast<double>(events.size());
+    share = static_cast<double>(s.w) / static_cast<double>(events.size());
     // An event late by dt sits at u = x - v dt; pulling it by d means v should fall by d / dt.
-    const Eigen::Vector2d slope((sum_tx - mean_t * sum_x) / spread, (sum_ty - mean_t * sum_y) / spread);
+    const Eigen::Vector2d slope((s.xt - mean_t * s.x) / spread, (s.yt - mean_t * s.y) / spread);
     const Eigen::Vector2d step = -options_.cell_px * slope;
     *flow += kOverRelaxation * step;
     if (step.norm() * half_window_s < options_.settled_px) break;

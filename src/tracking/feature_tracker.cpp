@@ -295,7 +295,6 @@ void FeatureTracker::UpdateTemplate(const LocalEvents& events, const PatchMotion
   // the last one has little news, and all that it would add is its own error of alignment.
   const double news = std::min(1.0, step_s / (2.0 * ToSeconds(feature->half_window)));
   const double gain = std::max(1.0 - std::pow(1.0 - options_.template_gain, news), 1.0 / feature->frames);
-  feature->events.Scale(static_cast<float>(1.0 - gain));
   thread_local std::optional<DensityMap> window;
   if (!window || window->side() != feature->events.side() || window->planes() != feature->events.planes()) {
     window.emplace(feature->events.radius(), feature->events.planes());
@@ -303,7 +302,8 @@ void FeatureTracker::UpdateTemplate(const LocalEvents& events, const PatchMotion
   window->Clear();
   Accumulate(events, motion, &*window);
   // Windows weigh the same however many events they hold.
-  feature->events.Add(*window, static_cast<float>(gain / std::max(1.0, window->Total())));
+  feature->events.Blend(static_cast<float>(1.0 - gain), *window,
+                        static_cast<float>(gain / std::max(1.0, window->Total())));
   const double growth = std::sqrt(std::abs(feature->linear.determinant()));
   const double bent = feature->perspective.norm() * options_.patch_radius_px;
   if (growth > kRebaseScale || growth < 1.0 / kRebaseScale || bent > kRebaseBend) {

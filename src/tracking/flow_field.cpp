@@ -15,7 +15,7 @@ constexpr double kNeighbourhoodPx = 40.0;  // features this near tell a cell its
 constexpr double kCoarseCellPx = 2.0;
 constexpr double kCoarselySettledPx = 0.1;
 constexpr double kSettledPx = 0.02;
-constexpr double kCautiousShare = 0.5;  // of a window's motion, while the flow comes from elsewhere
+constexpr double kCautiousShare = 1.0;  // of a window's motion, while the flow comes from elsewhere
 
 bool GatherForFlow(const EventHistory& history, TimeNs t, double x, double y, const Eigen::Vector2d& flow,
                    TimeNs half_window, const TrackerOptions& options, LocalEvents* events) {

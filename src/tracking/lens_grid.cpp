@@ -34,7 +34,11 @@ LensGrid::LensGrid(const Camera& camera)
     : focal_px_(camera.focal_px()), columns_(camera.width() / kSpacingPx + 2), rows_(camera.height() / kSpacingPx + 2) {
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
-      points_.push_back(GeometryAt(camera, Eigen::Vector2d(column, row) * kSpacingPx));
+      const PixelGeometry geometry = GeometryAt(camera, Eigen::Vector2d(column, row) * kSpacingPx);
+      const bool known = geometry.known();
+      Point point{geometry, Eigen::Matrix2d::Zero()};
+      if (known) point.by_pixel = geometry.by_normalized.inverse();
+      points_.push_back(point);
     }
   }
 }
@@ -42,9 +46,9 @@ LensGrid::LensGrid(const Camera& camera)
 PixelGeometry LensGrid::At(const Eigen::Vector2d& pixel) const {
   const int column = std::clamp(static_cast<int>(std::lround(pixel.x() / kSpacingPx)), 0, columns_ - 1);
   const int row = std::clamp(static_cast<int>(std::lround(pixel.y() / kSpacingPx)), 0, rows_ - 1);
-  PixelGeometry geometry = points_[static_cast<std::size_t>(row * columns_ + column)];
-  if (!geometry.known()) return geometry;
-  geometry.normalized += geometry.by_normalized.inverse() * (pixel - Eigen::Vector2d(column, row) * kSpacingPx);
+  const Point& point = points_[static_cast<std::size_t>(row * columns_ + column)];
+  PixelGeometry geometry = point.geometry;
+  geometry.normalized += point.by_pixel * (pixel - Eigen::Vector2d(column, row) * kSpacingPx);
   return geometry;
 }
 

@@ -9,7 +9,7 @@ void Register(Parameters& parameters, TrackerOptions& o) {
   parameters.Add("tracker.features", &o.features, 8, 2000, "live features to aim at");
   parameters.Add("tracker.refill_below", &o.refill_below, 0.0, 1.0, "detect when fewer than this share is alive");
   parameters.Add("tracker.frames_between_refills", &o.frames_between_refills, 1, 1000,
-                 "at least, from key frame to key frame");
+                 "at least, from key frame to key frame; half as many where most features are missing");
   parameters.Add("tracker.flow_patch_radius_px", &o.flow_patch_radius_px, 5, 40,
                  "half the side of the patch that tells a first flow (px)");
   parameters.Add("tracker.patch_radius_px", &o.patch_radius_px, 5, 40, "half the side of a feature's patch (px)");

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <random>
+#include <vector>
 
 namespace evo {
 namespace {
@@ -22,6 +24,32 @@ TEST(DensityMap, VotesAreBilinearAndLoseNothingInside) {
     map.Vote(0.0f, far, 0, 1.0f);
   }
   EXPECT_FLOAT_EQ(static_cast<float>(map.Total()), 2.0f);
+}
+
+TEST(DensityMap, ManyVoteLikeOneByOne) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> place(-7.0f, 7.0f);
+  std::vector<float> x, y;
+  std::vector<std::int8_t> polarity;
+  for (int i = 0; i < 83; ++i) {
+    x.push_back(place(random));
+    y.push_back(place(random));
+    polarity.push_back(i % 3 ? 1 : -1);
+  }
+  for (const float far : {std::nanf(""), INFINITY, -INFINITY, 1e10f, -1e10f, 5.0f, -5.0f}) {
+    x.insert(x.end(), {far, 0.0f});
+    y.insert(y.end(), {0.0f, far});
+    polarity.insert(polarity.end(), {1, -1});
+  }
+  for (const int planes : {1, 2}) {
+    DensityMap together(5, planes), apart(5, planes);
+    together.Vote(x, y, polarity);
+    for (std::size_t i = 0; i < x.size(); ++i) apart.Vote(x[i], y[i], apart.PlaneOf(polarity[i]), 1.0f);
+    EXPECT_GT(apart.Total(), 30.0);
+    for (int i = 0; i < planes * apart.side() * apart.side(); ++i) {
+      EXPECT_NEAR(together.plane(0)[i], apart.plane(0)[i], 1e-5) << i;
+    }
+  }
 }
 
 TEST(DensityMap, WarpMovesCellsAndKeepsTheNumberOfEvents) {
@@ -100,6 +128,46 @@ TEST(AssociationField, WeighsTheCentreMost) {
   EXPECT_NEAR(field.At(6.0f, 0.0f, 0)[3], 0.75 * 0.75, 1e-5);
   EXPECT_NEAR(field.At(6.0f, 0.0f, 0)[0], 0.75 * 0.75, 1e-3);  // no stray events: the weight alone
   EXPECT_NEAR(field.At(11.9f, 0.0f, 0)[3], 0.0f, 0.005f);
+}
+
+TEST(AssociationField, OwnMomentsAreSumsOverThePatch) {
+  DensityMap map(12, 2);
+  for (int i = 0; i < 400; ++i) {
+    const auto s = static_cast<float>(i);
+    map.Vote(8.0f * std::sin(0.7f * s), 9.0f * std::cos(0.31f * s), i % 2, 1.0f);
+  }
+  AssociationField field;
+  field.Build(map, 0.75, 0.2);
+  Eigen::Matrix2d linear;
+  for (const double turn : {0.0, 0.3, -0.1}) {
+    linear << 1.13, turn, -turn, 0.91;
+    Eigen::Matrix<double, 2, 3> sums = Eigen::Matrix<double, 2, 3>::Zero();
+    double weight = 0.0;
+    for (int p = 0; p < 2; ++p) {
+      for (int v = -12; v <= 12; ++v) {
+        for (int u = -12; u <= 12; ++u) {
+          if ((linear * Eigen::Vector2d(u, v)).cwiseAbs().maxCoeff() > 8.0) continue;
+          const double votes = map.plane(p)[(v + 12) * map.side() + u + 12];
+          const auto pull = field.At(static_cast<float>(u), static_cast<float>(v), p);
+          weight += votes * pull[0];
+          sums += votes * Eigen::Vector2d(pull[1], pull[2]) * Eigen::RowVector3d(1.0, u, v);
+        }
+      }
+    }
+    EXPECT_LT((field.OwnMoments(map, linear, 8.0) - sums / weight).norm(), 1e-4) << turn;
+  }
+}
+
+TEST(AssociationField, EvenWeightsLeaveThePullAsItIs) {
+  DensityMap map(12, 1);
+  for (int i = 0; i < 50; ++i) map.Vote(6.0f, 5.0f, 0, 1.0f);
+  AssociationField centred, even;
+  centred.Build(map, 1.5, 0.2);
+  even.Build(map, 1.5, 0.2, AssociationField::Weight::kEven);
+  const auto pull = centred.At(7.0f, 5.0f, 0);
+  EXPECT_GT(pull[0], 0.1f);
+  EXPECT_LT((even.At(7.0f, 5.0f, 0) - pull / pull[3]).abs().maxCoeff(), 1e-5f);
+  EXPECT_EQ(even.At(12.0f, 5.0f, 0)[3], 0.0f);  // at the edge nothing pulls
 }
 
 TEST(AssociationField, InformationIsThatOfABlurredLine) {

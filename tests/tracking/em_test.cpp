@@ -153,6 +153,67 @@ TEST(TemplatePoints, UndoTheMotionThatTheyAreGiven) {
   }
 }
 
+TEST(AlignToTemplate, OneStepIsTheLeastSquaresOfThePulls) {
+  const DensityMap map = TemplateOf(PatchEvents({}, 0.01, 2000, 1));
+  AssociationField field;
+  field.Build(map, 1.0, 0.2);
+  PatchMotion truth;
+  truth.offset = {0.7, -0.4};
+  truth.flow = {40, -30};
+  const LocalEvents events = PatchEvents(truth, 0.02, 611, 2);
+  PatchMotion motion;
+  motion.flow = {35, -25};
+  motion.perspective = {0.004, -0.002};
+  motion.rate << 1.0, 0.1, -0.2, 0.8;
+  TemplatePoints points;
+  points.Update(events, motion);
+  Eigen::Matrix4d normal = Eigen::Vector4d(0.0, 20.0, 10.0, 10.0).asDiagonal();
+  Eigen::Matrix<double, 4, 2> right = Eigen::Matrix<double, 4, 2>::Zero();
+  double all = 0.0, inliers = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const Eigen::Vector4d row(1.0, events.dt[i] / 0.02, points.u[i] / 15.0, points.v[i] / 15.0);
+    const Eigen::Array4d pull = field.At(points.u[i], points.v[i], events.polarity[i] < 0 ? 1 : 0).cast<double>();
+    normal += pull[0] * row * row.transpose();
+    right += row * Eigen::RowVector2d(pull[1], pull[2]);
+    inliers += pull[0];
+    all += pull[3];
+    if (pull[0] > 0.0) squares += (pull[1] * pull[1] + pull[2] * pull[2]) / pull[0];
+  }
+  const Eigen::Matrix<double, 4, 2> step = 1.5 * normal.inverse() * right;
+  const AlignmentQuality quality = AlignToTemplate(events, field, 2, {1, 15.0, 0.02, 20.0, 10.0}, true, &motion);
+  EXPECT_NEAR(quality.inlier_share, inliers / all, 1e-4);
+  EXPECT_NEAR(quality.residual_px, std::sqrt(squares / inliers), 1e-4);
+  Matrix2d linear;
+  linear << step(2, 0), step(3, 0), step(2, 1), step(3, 1);
+  linear = (Matrix2d::Identity() + linear / 15.0).inverse().eval();
+  EXPECT_GT(step.row(0).norm(), 0.1);
+  EXPECT_LT((motion.linear - linear).norm(), 1e-4);
+  EXPECT_LT((motion.offset + linear * step.row(0).transpose()).norm(), 1e-4);
+  EXPECT_LT((motion.flow - Vector2d(35, -25) + linear * step.row(1).transpose() / 0.02).norm(), 1e-2);
+}
+
+TEST(AlignToTemplate, WhatLiesOutsideChangesNothing) {
+  const DensityMap map = TemplateOf(PatchEvents({}, 0.01, 2000, 1));
+  AssociationField field;
+  field.Build(map, 1.0, 0.2);
+  LocalEvents events = PatchEvents({}, 0.01, 300, 3);
+  const AlignmentOptions options{20, 15.0, 0.01, 20.0, 10.0};
+  PatchMotion alone;
+  alone.offset = {0.5, 0.3};
+  const PatchMotion start = alone;
+  AlignToTemplate(events, field, 2, options, true, &alone);
+  for (int i = 0; i < 9; ++i) {
+    events.x.push_back(i % 2 ? 40.0f : -1e5f);
+    events.y.push_back(i % 3 ? 3.0f : -1e5f);
+    events.dt.push_back(0.0f);
+    events.polarity.push_back(i % 2 ? 1 : -1);
+    PatchMotion motion = start;
+    AlignToTemplate(events, field, 2, options, true, &motion);
+    EXPECT_LT((motion.offset - alone.offset).norm(), 1e-5) << i;
+    EXPECT_LT((motion.flow - alone.flow).norm(), 1e-2) << i;
+  }
+}
+
 TEST(AlignToTemplate, LeavesAnAlignedWindowWhereItIs) {
   // A blurred density pulls even perfectly aligned events inwards; the template must not shrink for it.
   const LocalEvents events = PatchEvents({}, 0.01, 2000, 1);

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace evo {
@@ -24,8 +25,8 @@ class DensityMap {
 
   void Clear();
   void Scale(float factor);
-  /// Adds `factor` times another map of the same size.
-  void Add(const DensityMap& other, float factor);
+  /// Becomes `keep` times itself and `factor` times another map of the same size.
+  void Blend(float keep, const DensityMap& other, float factor);
   /// Adds an event bilinearly to the four cells around it; nothing happens outside the map.
   void Vote(float x, float y, int plane, float weight) {
     const float column = x + static_cast<float>(radius_);
@@ -42,6 +43,8 @@ class DensityMap {
     cell[side()] += weight * (1.0f - fx) * fy;
     cell[side() + 1] += weight * fx * fy;
   }
+  /// The same for many events, each of weight 1.
+  void Vote(std::span<const float> x, std::span<const float> y, std::span<const std::int8_t> polarity);
   /// The same events seen in other coordinates: a cell at u moves to `linear` * u / (1 + `perspective` . u).
   DensityMap Warped(const Eigen::Matrix2d& linear, const Eigen::Vector2d& perspective = Eigen::Vector2d::Zero()) const;
 
@@ -62,9 +65,15 @@ class AssociationField {
   /// (1 - r^2)^2: what lies farther out is more often of another depth, and bends more.
   using Pull = Eigen::Array4f;
 
+  enum class Weight { kCentre, kEven };
   /// `outlier_share`: D0 as a share of the map's mean density.
-  void Build(const DensityMap& map, double sigma_px, double outlier_share);
+  void Build(const DensityMap& map, double sigma_px, double outlier_share, Weight weight = Weight::kCentre);
 
+  int radius() const { return radius_; }
+  int side() const { return side_; }
+  /// Of all cells, row by row and plane by plane. Zero at the edge of a plane, and for one row and a cell after the
+  /// last.
+  const Pull* table() const { return table_.data(); }
   Pull At(float x, float y, int plane) const {
     const float column = x + static_cast<float>(radius_);
     const float row = y + static_cast<float>(radius_);
@@ -93,18 +102,17 @@ class AssociationField {
   Eigen::Matrix2d Information(const DensityMap& map, const AssociationField& other) const;
 
  private:
-  void WeighCentre();
-  /// One row: the sum of kernel_[|i|] * in[c + i * step].
-  void Convolve(const float* in, std::ptrdiff_t step, float* out) const;
+  void Weigh(Weight weight);
   void Smooth(const float* plane);
 
   int radius_ = 0;
   int side_ = 0;
   double sigma_px_ = 1.0;
   std::vector<Pull> table_;  // per plane and cell
-  int width_ = 0;            // of a row below: side_ rounded up to whole blocks
-  std::vector<float> kernel_, row_, rows_, smooth_;
-  std::vector<float> centre_;  // weight of each cell
+  int margin_ = 0;           // empty rows above and below the planes that follow, and cells at least between two rows
+  int width_ = 0;            // of their rows
+  std::vector<float> kernel_, plane_, rows_, smooth_;
+  std::vector<float> centre_;  // weight of each cell, in rows as wide
 };
 
 }  // namespace evo

@@ -73,6 +73,7 @@ class EgoMotion {
   void Orient(const std::vector<FlowSample>& features, const std::vector<PixelGeometry>& pixels);
 
   LensGrid lens_;
+  std::size_t next_start_ = 0;  // counts
   bool known_ = false;
   CameraMotion motion_;
   Matrix6d covariance_ = Matrix6d::Zero();

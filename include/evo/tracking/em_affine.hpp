@@ -43,7 +43,6 @@ struct AlignmentOptions {
 struct AlignmentQuality {
   double inlier_share = 0.0;  ///< mean probability that an event belongs to the template
   double residual_px = 0.0;   ///< root mean square pull left on the events after the fit
-  double last_step_px = 0.0;  ///< of the last iteration
 };
 
 /// Expectation maximisation of a patch's motion against its template (Zhu et al., EM 2, a soft iterative closest

@@ -1,10 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
 
 #include "evo/events/event_history.hpp"
-#include "evo/tracking/event_density.hpp"
 
 namespace evo {
 
@@ -24,16 +22,13 @@ class FlowEstimator {
   FlowEstimator(int radius_px, int planes, const FlowOptions& options);
 
   /// Refines `flow` (px/s) on the events of a window; returns the share of them that belong to an edge under it.
-  double Refine(const LocalEvents& events, double half_window_s, Eigen::Vector2d* flow);
+  double Refine(const LocalEvents& events, double half_window_s, Eigen::Vector2d* flow) const;
 
  private:
-  /// Propagates the events along `flow` to the reference instant: u_, v_.
-  void Propagate(const LocalEvents& events, const Eigen::Vector2d& flow);
-
   FlowOptions options_;
-  bool by_polarity_;
-  EventDensity density_;
-  std::vector<float> u_, v_;  // cells
+  double sigma_;  // cells
+  int radius_;    // cells
+  int planes_;
 };
 
 }  // namespace evo

@@ -28,10 +28,15 @@ class LensGrid {
   PixelGeometry At(const Eigen::Vector2d& pixel) const;
 
  private:
+  struct Point {
+    PixelGeometry geometry;
+    Eigen::Matrix2d by_pixel;  ///< of `normalized`; zero where not known
+  };
+
   double focal_px_;
   int columns_;
   int rows_;
-  std::vector<PixelGeometry> points_;
+  std::vector<Point> points_;
 };
 
 }  // namespace evo

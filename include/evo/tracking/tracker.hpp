@@ -46,24 +46,27 @@ std::unique_ptr<Tracker> MakeTracker(const Camera& camera, const TrackerOptions&
 /// What the positions of that tracker are, one line for the head of a track file.
 std::string DescribePositions(const TrackerOptions& options);
 
-/// When to look for new features: as soon as too few are alive, but not in every frame.
+/// When to look for new features: as soon as too few are alive, but not in every frame; sooner where most are missing.
 class RefillPolicy {
  public:
   explicit RefillPolicy(const TrackerOptions& options)
       : fewest_(options.refill_below * options.features),
+        few_(0.5 * options.features),
         pause_(options.frames_between_refills),
         frames_since_refill_(pause_) {}
 
   /// To be asked once in each frame.
   bool IsDue(std::size_t alive) {
     ++frames_since_refill_;
-    const bool due = frames_since_refill_ >= pause_ && static_cast<double>(alive) < fewest_;
+    const int pause = static_cast<double>(alive) < few_ ? (pause_ + 1) / 2 : pause_;
+    const bool due = frames_since_refill_ >= pause && static_cast<double>(alive) < fewest_;
     if (due) frames_since_refill_ = 0;
     return due;
   }
 
  private:
   double fewest_;
+  double few_;
   int pause_;
   int frames_since_refill_;
 };

@@ -21,7 +21,7 @@ struct TrackerOptions {
   double frame_interval_s = 0.02;  ///< time between two event frames
   int features = 150;              ///< live features to aim at
   double refill_below = 0.97;      ///< detect new ones when fewer than this share is alive: a key frame
-  int frames_between_refills = 3;  ///< at least: where there is nothing new to find, do not look at every frame
+  int frames_between_refills = 5;  ///< at least; half as many where most are missing
   int flow_patch_radius_px = 15;   ///< half the side of the patch that tells a first flow: 31 x 31 px
   int patch_radius_px = 8;         ///< half the side of a feature's patch: 17 x 17 px; larger ones span more depths
 
@@ -33,7 +33,7 @@ struct TrackerOptions {
   int fewest_events = 50;           ///< in a new feature's window
   int fewest_events_alive = 15;     ///< lost with fewer in a window twice as long,
   double resting_flow_px_s = 20.0;  ///< unless it moves no faster than this: then it stays without events
-  int most_events = 400;            ///< in a patch's window: of more, an even sample is taken
+  int most_events = 300;            ///< in a patch's window: of more, an even sample is taken
 
   // Expectation maximisation.
   double flow_sigma_px = 1.5;    ///< soft association of events among themselves (EM 1), but for the last window

@@ -1,0 +1,36 @@
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <vector>
+
+#include "evo/tracking/tracker.hpp"
+
+namespace evo {
+namespace {
+
+/// The frames of the first 20 in which new features are looked for, if so many are alive in each.
+std::vector<int> RefilledFrames(std::size_t alive) {
+  TrackerOptions options;
+  options.features = 100;
+  options.refill_below = 0.9;
+  options.frames_between_refills = 5;
+  RefillPolicy policy(options);
+  std::vector<int> frames;
+  for (int frame = 0; frame < 20; ++frame) {
+    if (policy.IsDue(alive)) frames.push_back(frame);
+  }
+  return frames;
+}
+
+TEST(RefillPolicy, LooksForFeaturesWhereTooFewAreAliveButNotInEveryFrame) {
+  EXPECT_EQ(RefilledFrames(89), (std::vector<int>{0, 5, 10, 15}));
+  EXPECT_EQ(RefilledFrames(50), (std::vector<int>{0, 5, 10, 15}));
+  EXPECT_TRUE(RefilledFrames(90).empty());
+}
+
+TEST(RefillPolicy, LooksSoonerWhereMostAreMissing) {
+  EXPECT_EQ(RefilledFrames(49), (std::vector<int>{0, 3, 6, 9, 12, 15, 18}));
+}
+
+}  // namespace
+}  // namespace evo
