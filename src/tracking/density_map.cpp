@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <numeric>
 
+#include "tracking/event_lanes.hpp"
 #include "tracking/gaussian_kernel.hpp"
-#include "tracking/lanes.hpp"
 
 namespace evo {
 
@@ -46,10 +46,6 @@ EVO_HOT void TabulatePulls(const float* density, const float* centre, int width,
 }
 
 EVO_HOT void BlendCells(float keep, const float* other, float factor, std::span<float> cells) {
-  if (!other) {
-    for (float& cell : cells) cell *= keep;
-    return;
-  }
   for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = keep * cells[i] + factor * other[i];
 }
 
@@ -86,7 +82,7 @@ void DensityMap::Clear() { std::ranges::fill(cells_, 0.0f); }
 namespace {
 
 EVO_HOT void VoteInto(float* cells, int radius, std::int32_t second, std::span<const float> x, std::span<const float> y,
-                      const std::int8_t* polarity) {
+                      std::span<const std::int8_t> polarity) {
   const std::ptrdiff_t side = 2 * radius + 1;
   const auto reach = static_cast<float>(radius);
   const auto width = static_cast<float>(side);
@@ -101,33 +97,25 @@ EVO_HOT void VoteInto(float* cells, int radius, std::int32_t second, std::span<c
   };
   for (std::size_t begin = 0; begin < x.size(); begin += kLanes) {
     const std::size_t count = std::min<std::size_t>(kLanes, x.size() - begin);
-    Lanes column{}, row{};
-    if (count == kLanes) {
-      Load(&x[begin], &column);
-      Load(&y[begin], &row);
-    } else {
-      for (int i = 0; i < kLanes; ++i) {
-        column[i] = begin + i < x.size() ? x[begin + i] : 1e6f;
-        row[i] = begin + i < x.size() ? y[begin + i] : 1e6f;
-      }
-    }
+    Lanes column, row;
+    Load(x, begin, kOutside, &column);
+    Load(y, begin, kOutside, &row);
     column += reach;
     row += reach;
     const LaneInts inside = (column >= zero) & (row >= zero) & (column < last) & (row < last);
     column = inside ? column : zero;
     row = inside ? row : zero;
-    const Lanes c = __builtin_convertvector(__builtin_convertvector(column, LaneInts), Lanes);
-    const Lanes r = __builtin_convertvector(__builtin_convertvector(row, LaneInts), Lanes);
-    const LaneInts cell = __builtin_convertvector(r * width + c, LaneInts);
-    const Lanes fx = column - c;
-    const Lanes fy = inside ? row - r : zero;
+    LaneCells at;
+    FindCells(column, row, width, &at);
+    const Lanes& fx = at.fx;
+    const Lanes fy = inside ? at.fy : zero;
     const Lanes rest = inside ? 1.0f - fy : zero;  // what lies outside votes with nothing
     const Lanes w01 = fx * rest;
     const Lanes w00 = rest - w01;
     const Lanes w11 = fx * fy;
     const Lanes w10 = fy - w11;
     for (std::size_t i = 0; i < count; ++i) {
-      vote(polarity[begin + i] < 0 ? second : 0, cell[i], w00[i], w01[i], w10[i], w11[i]);
+      vote(polarity[begin + i] < 0 ? second : 0, at.index[i], w00[i], w01[i], w10[i], w11[i]);
     }
   }
 }
@@ -135,10 +123,12 @@ EVO_HOT void VoteInto(float* cells, int radius, std::int32_t second, std::span<c
 }  // namespace
 
 void DensityMap::Vote(std::span<const float> x, std::span<const float> y, std::span<const std::int8_t> polarity) {
-  VoteInto(cells_.data(), radius_, planes_ == 2 ? side() * side() : 0, x, y, polarity.data());
+  VoteInto(cells_.data(), radius_, planes_ == 2 ? side() * side() : 0, x, y, polarity);
 }
 
-void DensityMap::Scale(float factor) { BlendCells(factor, nullptr, 0.0f, cells_); }
+void DensityMap::Scale(float factor) {
+  for (float& cell : cells_) cell *= factor;
+}
 
 void DensityMap::Blend(float keep, const DensityMap& other, float factor) {
   BlendCells(keep, other.cells_.data(), factor, cells_);
@@ -174,17 +164,14 @@ DensityMap DensityMap::Warped(const Eigen::Matrix2d& linear, const Eigen::Vector
   return warped;
 }
 
-void AssociationField::Weigh(Weight weight) {
+void AssociationField::Weigh() {
   centre_.assign(static_cast<std::size_t>(side_ * width_), 0.0f);
-  for (int r = 0; r < side_; ++r) {
-    for (int c = 0; c < side_; ++c) {
+  for (int r = 1; r + 1 < side_; ++r) {
+    for (int c = 1; c + 1 < side_; ++c) {
       const double distance = std::hypot(r - radius_, c - radius_) / radius_;
       const double by_distance = std::max(0.0, 1.0 - distance * distance);
-      const bool at_edge = r == 0 || c == 0 || r == side_ - 1 || c == side_ - 1;
-      centre_[static_cast<std::size_t>(r * width_ + c)] = at_edge ? 0.0f
-                                                          : weight == Weight::kEven
-                                                              ? 1.0f
-                                                              : static_cast<float>(by_distance * by_distance);
+      const double weight = weight_ == Weight::kEven ? 1.0 : by_distance * by_distance;
+      centre_[static_cast<std::size_t>(r * width_ + c)] = static_cast<float>(weight);
     }
   }
 }
@@ -200,7 +187,7 @@ void AssociationField::Smooth(const float* plane) {
 void AssociationField::Build(const DensityMap& map, double sigma_px, double outlier_share, Weight weight) {
   const auto reach = std::min(map.radius(), GaussianReach(sigma_px));
   const auto cells = static_cast<std::size_t>(map.planes() * map.side() * map.side());
-  if (map.side() != side_ || reach != margin_ - 1 || table_.size() < cells) {
+  if (map.side() != side_ || reach != margin_ - 1 || weight != weight_ || table_.size() < cells) {
     radius_ = map.radius();
     side_ = map.side();
     margin_ = reach + 1;
@@ -211,7 +198,8 @@ void AssociationField::Build(const DensityMap& map, double sigma_px, double outl
     smooth_.assign(padded, 0.0f);
     // What is at the edge stays zero, and what is read or written beyond the last cell.
     table_.assign(cells + static_cast<std::size_t>(side_ + kLanes), Pull::Zero());
-    Weigh(weight);
+    weight_ = weight;
+    Weigh();
   }
   sigma_px_ = sigma_px;
   kernel_.resize(static_cast<std::size_t>(reach) + 1);
@@ -270,23 +258,14 @@ EVO_HOT void AddMoments(const float* votes, const float* pulls, int radius, cons
     const int end = r * side + radius + columns.end;
     Lanes one{}, by_u{}, u = Lanes{} + static_cast<float>(columns.begin);
     u += Lanes{0, 0, 0, 0, 1, 1, 1, 1};
-    int i = begin;
-    for (; i + 1 < end; i += 2) {
+    for (int i = begin; i < end; i += 2) {
       Lanes pull, vote;
       Load(pulls + 4 * i, &pull);
-      Join(FourLanes{} + votes[i], FourLanes{} + votes[i + 1], &vote);
+      Join(FourLanes{} + votes[i], FourLanes{} + (i + 1 < end ? votes[i + 1] : 0.0f), &vote);
       pull *= vote;
       one += pull;
       by_u += u * pull;
       u += 2.0f;
-    }
-    if (i < end) {
-      Lanes pull, vote;
-      Load(pulls + 4 * i, &pull);
-      Join(FourLanes{} + votes[i], FourLanes{}, &vote);
-      pull *= vote;
-      one += pull;
-      by_u += u * pull;
     }
     FourLanes here, next, here_by_u, next_by_u;
     Split(one, &here, &next);

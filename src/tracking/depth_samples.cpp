@@ -32,10 +32,6 @@ struct Neighbours {
     nearer.push_back(static_cast<float>(how_much_nearer));
     weights.push_back(static_cast<float>(weight));
   }
-  /// Fills up the last eight with some of no weight.
-  void Pad() {
-    while (x.size() % kLanes != 0) Add({0.0, 0.0}, 0.0, 0.0);
-  }
 };
 
 /// Of the weighted least squares of a slope.
@@ -50,10 +46,10 @@ EVO_HOT void SumSlopes(const Neighbours& neighbours, const Eigen::Vector2f& slop
   const Lanes zero{};
   for (std::size_t i = 0; i < neighbours.x.size(); i += kLanes) {
     Lanes x, y, nearer, weight;
-    Load(&neighbours.x[i], &x);
-    Load(&neighbours.y[i], &y);
-    Load(&neighbours.nearer[i], &nearer);
-    Load(&neighbours.weights[i], &weight);
+    Load(neighbours.x, i, 0.0f, &x);
+    Load(neighbours.y, i, 0.0f, &y);
+    Load(neighbours.nearer, i, 0.0f, &nearer);
+    Load(neighbours.weights, i, 0.0f, &weight);
     const Lanes usual = width * (1.0f + (nearer > zero ? nearer : zero));
     const Lanes residual = (nearer - slope_x * x - slope_y * y) / usual;
     const Lanes w = weight / (1.0f + residual * residual);
@@ -81,7 +77,6 @@ std::optional<Eigen::Vector2d> SurfaceSlope(const std::vector<DepthSample>& samp
     if (distance >= 1.0 || distance == 0.0 || !(sample.inverse_depth > 0.0)) continue;
     neighbours.Add(away, sample.inverse_depth / at.inverse_depth - 1.0, 1.0 - distance);
   }
-  neighbours.Pad();
   constexpr double kPrior = kUsualError * kUsualError / (kUsualSlope * kUsualSlope);
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();
   SlopeSums s{};

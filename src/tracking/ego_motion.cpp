@@ -94,7 +94,7 @@ void EgoMotion::Update(const std::vector<FlowSample>& features, double step_s) {
 
   std::vector<Eigen::Vector3d> starts{Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY()};
   if (was_known) {
-    std::ranges::rotate(starts, starts.begin() + next_start_++ % 3);
+    std::ranges::rotate(starts, starts.begin() + static_cast<std::ptrdiff_t>(next_start_++ % starts.size()));
     starts.insert(starts.begin(), motion_.direction);
   }
   const Eigen::Vector3d turn_rate = was_known ? motion_.turn_rate : Eigen::Vector3d::Zero();

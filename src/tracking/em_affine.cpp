@@ -72,14 +72,18 @@ EVO_HOT void SumMoments(const LocalEvents& events, const InverseMotion& motion, 
   const std::int32_t second = planes == 2 ? field.side() * field.side() : 0;
   const Lanes nothing = Lanes{} + 1e-30f;
   for (std::size_t begin = 0; begin < events.size(); begin += kLanes) {
-    EventLanes event;
-    Load(events, begin, second, &event);
+    Lanes event_x, event_y, dt;
+    Load(events.x, begin, kOutside, &event_x);
+    Load(events.y, begin, kOutside, &event_y);
+    Load(events.dt, begin, 0.0f, &dt);
+    std::int32_t planes_of[kLanes];
+    FindPlanes(events.polarity, begin, second, planes_of);
     Lanes u, v;
-    motion.ToTemplate(event.x, event.y, event.dt, &u, &v);
+    motion.ToTemplate(event_x, event_y, dt, &u, &v);
     LaneColumns pull;
-    PullsAt(field, u, v, event.plane, &pull);
+    PullsAt(field, u, v, planes_of, &pull);
     const auto& [inlier, pull_x, pull_y, centre] = pull;
-    const Lanes t = event.dt * per_window;
+    const Lanes t = dt * per_window;
     u *= per_radius;
     v *= per_radius;
     const Lanes pt = inlier * t;

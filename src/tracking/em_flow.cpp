@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -25,6 +26,8 @@ double SigmaInCells(const FlowOptions& options) {
 
 /// Kept by each thread for each size of patch.
 struct Workspace {
+  Workspace(int radius, int planes) : map(radius, planes) {}
+
   DensityMap map;
   AssociationField field;
   std::vector<float> u, v;  // cells
@@ -32,9 +35,7 @@ struct Workspace {
 
 Workspace& WorkspaceOf(int radius, int planes) {
   thread_local std::map<std::pair<int, int>, Workspace> workspaces;
-  const auto known = workspaces.find({radius, planes});
-  if (known != workspaces.end()) return known->second;
-  return workspaces.emplace(std::pair(radius, planes), Workspace{DensityMap(radius, planes), {}, {}, {}}).first->second;
+  return workspaces.try_emplace({radius, planes}, radius, planes).first->second;
 }
 
 /// Along `flow` to the reference instant.
@@ -53,26 +54,29 @@ struct PullSums {
   float w, wt, wtt, x, xt, y, yt;
 };
 
-EVO_HOT void SumPulls(const LocalEvents& events, const Eigen::Vector2f& flow, float per_cell,
+/// Of the events, which lie at (u, v).
+EVO_HOT void SumPulls(const LocalEvents& events, std::span<const float> us, std::span<const float> vs,
                       const AssociationField& field, int planes, PullSums* sums) {
   Lanes w{}, wt{}, wtt{}, sum_x{}, xt{}, sum_y{}, yt{};
   const std::int32_t second = planes == 2 ? field.side() * field.side() : 0;
-  const float vx = flow.x();
-  const float vy = flow.y();
   for (std::size_t begin = 0; begin < events.size(); begin += kLanes) {
-    EventLanes event;
-    Load(events, begin, second, &event);
+    Lanes u, v, dt;
+    Load(us, begin, kOutside, &u);
+    Load(vs, begin, kOutside, &v);
+    Load(events.dt, begin, 0.0f, &dt);
+    std::int32_t planes_of[kLanes];
+    FindPlanes(events.polarity, begin, second, planes_of);
     LaneColumns pull;
-    PullsAt(field, per_cell * (event.x - vx * event.dt), per_cell * (event.y - vy * event.dt), event.plane, &pull);
+    PullsAt(field, u, v, planes_of, &pull);
     const auto& [inlier, pull_x, pull_y, weight] = pull;
-    const Lanes pt = inlier * event.dt;
+    const Lanes pt = inlier * dt;
     w += inlier;
     wt += pt;
-    wtt += pt * event.dt;
+    wtt += pt * dt;
     sum_x += pull_x;
-    xt += pull_x * event.dt;
+    xt += pull_x * dt;
     sum_y += pull_y;
-    yt += pull_y * event.dt;
+    yt += pull_y * dt;
   }
   *sums = {Sum(w), Sum(wt), Sum(wtt), Sum(sum_x), Sum(xt), Sum(sum_y), Sum(yt)};
 }
@@ -97,7 +101,7 @@ double FlowEstimator::Refine(const LocalEvents& events, double half_window_s, Ei
 
     // Regression of the pull on time with an offset: the events of a window need not be centred in time.
     PullSums s;
-    SumPulls(events, flow->cast<float>(), per_cell, w.field, planes_, &s);
+    SumPulls(events, w.u, w.v, w.field, planes_, &s);
     if (!(s.w > 0.0f)) return 0.0;
     const float mean_t = s.wt / s.w;
     const float spread = s.wtt - mean_t * s.wt;

@@ -1,41 +1,28 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <span>
 
-#include "evo/events/event_history.hpp"
 #include "evo/tracking/density_map.hpp"
 #include "tracking/lanes.hpp"
 
 namespace evo {
 
-/// Eight events of a patch.
-struct EventLanes {
-  Lanes x{}, y{}, dt{};
-  std::int32_t plane[kLanes];  // where the cells of their polarity begin
-};
+constexpr float kOutside = 1e6f;  // px: of what is no event, outside every map
 
-/// Events from `begin` on; where there are no more, some that lie outside every map. `second`: where the cells of
-/// negative events begin.
-EVO_INLINE void Load(const LocalEvents& events, std::size_t begin, std::int32_t second, EventLanes* lanes) {
-  const std::size_t count = events.size();
-  if (begin + kLanes <= count) {
-    Load(events.x.data() + begin, &lanes->x);
-    Load(events.y.data() + begin, &lanes->y);
-    Load(events.dt.data() + begin, &lanes->dt);
-    for (int i = 0; i < kLanes; ++i) lanes->plane[i] = events.polarity[begin + i] < 0 ? second : 0;
+/// Where the cells of the polarities of eight events begin: of negative ones at `second`.
+EVO_INLINE void FindPlanes(std::span<const std::int8_t> polarity, std::size_t begin, std::int32_t second,
+                           std::int32_t* planes) {
+  if (begin + kLanes <= polarity.size()) {
+    for (int i = 0; i < kLanes; ++i) planes[i] = polarity[begin + i] < 0 ? second : 0;
     return;
   }
-  for (int i = 0; i < kLanes; ++i) {
-    const bool is_event = begin + i < count;
-    lanes->x[i] = is_event ? events.x[begin + i] : 1e6f;
-    lanes->y[i] = is_event ? events.y[begin + i] : 1e6f;
-    lanes->dt[i] = is_event ? events.dt[begin + i] : 0.0f;
-    lanes->plane[i] = is_event && events.polarity[begin + i] < 0 ? second : 0;
-  }
+  for (int i = 0; i < kLanes; ++i) planes[i] = begin + i < polarity.size() && polarity[begin + i] < 0 ? second : 0;
 }
 
 /// AssociationField::At of eight events at (u, v), a column for each part of the pull.
-EVO_INLINE void PullsAt(const AssociationField& field, const Lanes& u, const Lanes& v, const std::int32_t* plane,
+EVO_INLINE void PullsAt(const AssociationField& field, const Lanes& u, const Lanes& v, const std::int32_t* planes,
                         LaneColumns* pulls) {
   const auto radius = static_cast<float>(field.radius());
   const auto side = static_cast<float>(field.side());
@@ -48,21 +35,18 @@ EVO_INLINE void PullsAt(const AssociationField& field, const Lanes& u, const Lan
   column = column < last ? column : last;
   row = row > zero ? row : zero;
   row = row < last ? row : last;
-  const Lanes c = __builtin_convertvector(__builtin_convertvector(column, LaneInts), Lanes);
-  const Lanes r = __builtin_convertvector(__builtin_convertvector(row, LaneInts), Lanes);
-  const Lanes fx = column - c;
-  const Lanes fy = row - r;
-  const LaneInts cell = __builtin_convertvector(r * side + c, LaneInts);
+  LaneCells cells;
+  FindCells(column, row, side, &cells);
   FourLanes at[kLanes];
   for (int i = 0; i < kLanes; ++i) {
-    const float* const above = field.table()[plane[i] + cell[i]].data();
+    const float* const above = field.table()[planes[i] + cells.index[i]].data();
     Lanes two, below;
     Load(above, &two);
     Load(above + 4 * field.side(), &below);
-    two += fy[i] * (below - two);
+    two += cells.fy[i] * (below - two);
     FourLanes left, right;
     Split(two, &left, &right);
-    at[i] = left + fx[i] * (right - left);
+    at[i] = left + cells.fx[i] * (right - left);
   }
   ToColumns(at, pulls);
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <span>
 
 // A function that is compiled twice, for any processor and for those that take eight floats at a time; which of the two
 // runs is found out when the program is loaded, before a sanitizer is ready for it.
@@ -25,6 +26,15 @@ inline constexpr int kLanes = 8;
 // Never by value: functions that are not inlined could not agree on how such a value is passed.
 
 EVO_INLINE void Load(const float* from, Lanes* lanes) { std::memcpy(lanes, from, sizeof(Lanes)); }
+/// Of a column from `begin` on, and `otherwise` where it has ended.
+EVO_INLINE void Load(std::span<const float> column, std::size_t begin, float otherwise, Lanes* lanes) {
+  if (begin + kLanes <= column.size()) {
+    Load(column.data() + begin, lanes);
+    return;
+  }
+  *lanes = Lanes{};
+  for (int i = 0; i < kLanes; ++i) (*lanes)[i] = begin + i < column.size() ? column[begin + i] : otherwise;
+}
 EVO_INLINE void Store(const Lanes& lanes, float* to) { std::memcpy(to, &lanes, sizeof(Lanes)); }
 
 EVO_INLINE float Sum(const Lanes& a) { return ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7])); }
@@ -48,6 +58,20 @@ EVO_INLINE void Transpose(FourLanes* a, FourLanes* b, FourLanes* c, FourLanes* d
   *b = __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7);
   *c = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
   *d = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
+}
+
+/// Cells of a map that lie above and to the left of eight places in it, and how far beyond them these are.
+struct LaneCells {
+  LaneInts index;
+  Lanes fx, fy;
+};
+
+EVO_INLINE void FindCells(const Lanes& column, const Lanes& row, float width, LaneCells* cells) {
+  const Lanes c = __builtin_convertvector(__builtin_convertvector(column, LaneInts), Lanes);
+  const Lanes r = __builtin_convertvector(__builtin_convertvector(row, LaneInts), Lanes);
+  cells->index = __builtin_convertvector(r * width + c, LaneInts);
+  cells->fx = column - c;
+  cells->fy = row - r;
 }
 
 /// Four columns of eight rows.

@@ -168,6 +168,8 @@ TEST(AssociationField, EvenWeightsLeaveThePullAsItIs) {
   EXPECT_GT(pull[0], 0.1f);
   EXPECT_LT((even.At(7.0f, 5.0f, 0) - pull / pull[3]).abs().maxCoeff(), 1e-5f);
   EXPECT_EQ(even.At(12.0f, 5.0f, 0)[3], 0.0f);  // at the edge nothing pulls
+  even.Build(map, 1.5, 0.2);
+  EXPECT_TRUE((even.At(7.0f, 5.0f, 0) == pull).all());  // weights follow what is asked for
 }
 
 TEST(AssociationField, InformationIsThatOfABlurredLine) {

@@ -71,8 +71,7 @@ class AssociationField {
 
   int radius() const { return radius_; }
   int side() const { return side_; }
-  /// Of all cells, row by row and plane by plane. Zero at the edge of a plane, and for one row and a cell after the
-  /// last.
+  /// Of all cells, row by row and plane by plane. Zero at the edge of a plane, and for more than a row after the last.
   const Pull* table() const { return table_.data(); }
   Pull At(float x, float y, int plane) const {
     const float column = x + static_cast<float>(radius_);
@@ -102,12 +101,13 @@ class AssociationField {
   Eigen::Matrix2d Information(const DensityMap& map, const AssociationField& other) const;
 
  private:
-  void Weigh(Weight weight);
+  void Weigh();
   void Smooth(const float* plane);
 
   int radius_ = 0;
   int side_ = 0;
   double sigma_px_ = 1.0;
+  Weight weight_ = Weight::kCentre;
   std::vector<Pull> table_;  // per plane and cell
   int margin_ = 0;           // empty rows above and below the planes that follow, and cells at least between two rows
   int width_ = 0;            // of their rows
