@@ -9,10 +9,11 @@ namespace evo {
 
 namespace {
 
-constexpr int kTilePx = EventHistory::kTilePx;
+// By which the ends of a moving patch are widened, so that rounding loses none of its events.
+constexpr double kRoundingPx = 1e-3;
 
 std::size_t ClampTile(double px, std::size_t tiles) {
-  const double tile = std::floor(px / kTilePx);
+  const double tile = std::floor(px / EventHistory::kTilePx);
   return static_cast<std::size_t>(std::clamp(tile, 0.0, static_cast<double>(tiles) - 1.0));
 }
 
@@ -42,50 +43,73 @@ EventHistory::EventHistory(int width, int height)
     : width_(width),
       height_(height),
       columns_(static_cast<std::size_t>((width + kTilePx - 1) / kTilePx)),
-      rows_(static_cast<std::size_t>((height + kTilePx - 1) / kTilePx)),
-      tiles_(columns_ * rows_) {}
-
-std::vector<EventHistory::Entry>::const_iterator EventHistory::Tile::NotBefore(
-    TimeNs t, std::vector<Entry>::const_iterator from) const {
-  return std::lower_bound(from, entries.end(), t, [](const Entry& entry, TimeNs at) { return entry.After(at) < 0; });
-}
-
-std::span<const EventHistory::Entry> EventHistory::Between(std::size_t tile, TimeNs begin, TimeNs end) const {
-  const Tile& in = tiles_[tile];
-  const auto held = in.entries.begin() + static_cast<std::ptrdiff_t>(in.dropped);
-  // Of instants beyond those held the lower half says nothing.
-  const auto first = in.NotBefore(std::clamp(begin, oldest_, newest_ + 1), held);
-  return {first, in.NotBefore(std::clamp(end, oldest_, newest_ + 1), first)};
-}
+      rows_(static_cast<std::size_t>((height + kTilePx - 1) / kTilePx)) {}
 
 void EventHistory::Append(const EventColumns& events, std::size_t begin, std::size_t end) {
-  if (begin == end) return;
-  if (empty_) oldest_ = events.t[begin];
-  empty_ = false;
-  newest_ = std::max(oldest_, events.t[end - 1]);
-  if (newest_ - oldest_ >= kLongest) throw std::length_error("too long a history: nothing was dropped");
-  for (std::size_t i = begin; i < end; ++i) {
-    const unsigned x = events.x[i];
-    const unsigned y = events.y[i];
-    tiles_[(y / kTilePx) * columns_ + x / kTilePx].entries.push_back(
-        {static_cast<std::uint32_t>(events.t[i]), static_cast<std::uint8_t>(x % kTilePx),
-         static_cast<std::uint8_t>(y % kTilePx), events.polarity[i]});
+  while (begin < end) {
+    const TimeNs t = events.t[begin];
+    if (!origin_) origin_ = t;
+    const TimeNs slice = t - (t - *origin_) % kSlice;
+    const auto from = events.t.begin();
+    const auto next = std::lower_bound(from + static_cast<std::ptrdiff_t>(begin),
+                                       from + static_cast<std::ptrdiff_t>(end), slice + kSlice) -
+                      from;
+    AddToSlice(slice, events, begin, static_cast<std::size_t>(next));
+    begin = static_cast<std::size_t>(next);
   }
+}
+
+void EventHistory::AddToSlice(TimeNs t, const EventColumns& events, std::size_t begin, std::size_t end) {
+  const std::size_t tiles = columns_ * rows_;
+  if (slices_.empty() || slices_.back().begin != t) {
+    if (spare_.empty()) {
+      slices_.emplace_back();
+    } else {
+      slices_.push_back(std::move(spare_.back()));
+      spare_.pop_back();
+    }
+    slices_.back().begin = t;
+    slices_.back().entries.clear();
+    slices_.back().starts.assign(tiles + 1, 0);
+  }
+  Slice& slice = slices_.back();
+  next_.assign(tiles, 0);
+  for (std::size_t i = begin; i < end; ++i) ++next_[TileOf(events.x[i], events.y[i])];
+  merged_.resize(slice.entries.size() + end - begin);
+  std::uint32_t at = 0;
+  std::uint32_t before = 0;  // where the tile began
+  for (std::size_t tile = 0; tile < tiles; ++tile) {
+    const std::uint32_t before_end = slice.starts[tile + 1];
+    slice.starts[tile] = at;
+    if (before != before_end) {
+      std::copy(slice.entries.begin() + before, slice.entries.begin() + before_end, merged_.begin() + at);
+      at += before_end - before;
+    }
+    const std::uint32_t added = next_[tile];
+    next_[tile] = at;
+    at += added;
+    before = before_end;
+  }
+  slice.starts[tiles] = at;
+  for (std::size_t i = begin; i < end; ++i) {
+    const auto after = static_cast<std::uint32_t>(events.t[i] - t);
+    merged_[next_[TileOf(events.x[i], events.y[i])]++] = {2 * after + (events.polarity[i] > 0 ? 1 : 0), events.x[i],
+                                                          events.y[i]};
+  }
+  std::swap(slice.entries, merged_);
 }
 
 void EventHistory::DropBefore(TimeNs t) {
-  if (empty_ || t <= oldest_) return;
-  const TimeNs kept = std::min(t, newest_ + 1);
-  for (Tile& tile : tiles_) {
-    const auto held = tile.entries.begin() + static_cast<std::ptrdiff_t>(tile.dropped);
-    tile.dropped = static_cast<std::size_t>(tile.NotBefore(kept, held) - tile.entries.begin());
-    // Seldom enough that moving the rest to the front costs nothing.
-    if (tile.dropped <= tile.entries.size() / 2) continue;
-    tile.entries.erase(tile.entries.begin(), tile.entries.begin() + static_cast<std::ptrdiff_t>(tile.dropped));
-    tile.dropped = 0;
+  oldest_ = std::max(oldest_, t);
+  while (!slices_.empty() && slices_.front().begin + kSlice <= t) {
+    spare_.push_back(std::move(slices_.front()));
+    slices_.pop_front();
   }
-  oldest_ = t;
-  newest_ = std::max(oldest_, newest_);
+}
+
+std::size_t EventHistory::SliceAfter(TimeNs t) const {
+  const auto slice = std::ranges::upper_bound(slices_, t, {}, [](const Slice& s) { return s.begin + kSlice; });
+  return static_cast<std::size_t>(slice - slices_.begin());
 }
 
 TimeNs EventHistory::BeginOfNewest(TimeNs begin, TimeNs end, std::size_t count) const {
@@ -98,46 +122,65 @@ TimeNs EventHistory::BeginOfNewest(TimeNs begin, TimeNs end, std::size_t count) 
 }
 
 void EventHistory::Gather(const MovingPatch& patch, LocalEvents* local) const {
-  const double reach = ToSeconds(patch.half_window);
-  const double reach_x = patch.radius + std::abs(patch.vx) * reach;
-  const double reach_y = patch.radius + std::abs(patch.vy) * reach;
-  const std::size_t column_begin = ClampTile(patch.x - reach_x, columns_);
-  const std::size_t column_end = ClampTile(patch.x + reach_x, columns_) + 1;
-  const std::size_t row_begin = ClampTile(patch.y - reach_y, rows_);
-  const std::size_t row_end = ClampTile(patch.y + reach_y, rows_) + 1;
+  if (patch.half_window > kLongestHalfWindow) throw std::length_error("too long a window of events");
   const auto cx = static_cast<float>(patch.x);
   const auto cy = static_cast<float>(patch.y);
   const auto vx = static_cast<float>(patch.vx);
   const auto vy = static_cast<float>(patch.vy);
   const auto radius = static_cast<float>(patch.radius);
-  const TimeNs patch_t = patch.t;
+  const TimeNs begin = std::max(patch.t - patch.half_window, oldest_);
+  const TimeNs last = patch.t + patch.half_window;
 
+  // All runs first, so that they are on their way into the cache.
+  thread_local std::vector<Run> runs;
+  runs.clear();
+  std::size_t visited = 0;
+  for (std::size_t i = SliceAfter(begin); i < slices_.size() && slices_[i].begin <= last; ++i) {
+    const Slice& slice = slices_[i];
+    const TimeNs slice_begin = std::max(slice.begin, begin);
+    const TimeNs slice_last = std::min(slice.begin + kSlice - 1, last);
+    // The patch while the slice lasts.
+    const double middle_s = ToSeconds((slice_begin - patch.t + slice_last - patch.t) / 2);
+    const double reach_s = 0.5 * ToSeconds(slice_last - slice_begin);
+    const double centre_x = patch.x + middle_s * patch.vx;
+    const double centre_y = patch.y + middle_s * patch.vy;
+    const double reach_x = patch.radius + reach_s * std::abs(patch.vx) + kRoundingPx;
+    const double reach_y = patch.radius + reach_s * std::abs(patch.vy) + kRoundingPx;
+    const std::size_t column_begin = ClampTile(centre_x - reach_x, columns_);
+    const std::size_t column_end = ClampTile(centre_x + reach_x, columns_) + 1;
+    const std::size_t row_begin = ClampTile(centre_y - reach_y, rows_);
+    const std::size_t row_end = ClampTile(centre_y + reach_y, rows_) + 1;
+    for (std::size_t row = row_begin; row < row_end; ++row) {
+      const auto entries = slice.Of(row * columns_ + column_begin, row * columns_ + column_end);
+      if (entries.empty()) continue;
+      __builtin_prefetch(entries.data());
+      runs.push_back({entries, static_cast<std::int32_t>(slice.begin - patch.t),
+                      static_cast<std::int32_t>(slice_begin - slice.begin),
+                      static_cast<std::int32_t>(slice_last - slice.begin)});
+      visited += entries.size();
+    }
+  }
+  local->resize(visited + 1);
   std::size_t count = 0;
-  for (std::size_t row = row_begin; row < row_end; ++row) {
-    for (std::size_t column = column_begin; column < column_end; ++column) {
-      const auto entries =
-          Between(row * columns_ + column, patch.t - patch.half_window, patch.t + patch.half_window + 1);
-      const std::size_t most = count + entries.size();
-      if (most > local->size()) local->resize(2 * most);
-      // Plain pointers, which a write of a polarity cannot change.
-      float* const xs = local->x.data();
-      float* const ys = local->y.data();
-      float* const dts = local->dt.data();
-      std::int8_t* const polarities = local->polarity.data();
-      const int left = static_cast<int>(column) * kTilePx;
-      const int top = static_cast<int>(row) * kTilePx;
-      // Every event is written, but stays only if the next one does not overwrite it: no branch to mispredict.
-      for (const Entry& entry : entries) {
-        const float dt = 1e-9f * static_cast<float>(entry.After(patch_t));
-        const float x = static_cast<float>(left + entry.x) - cx;
-        const float y = static_cast<float>(top + entry.y) - cy;
-        xs[count] = x;
-        ys[count] = y;
-        dts[count] = dt;
-        polarities[count] = entry.polarity;
-        const bool is_inside = (std::abs(x - vx * dt) <= radius) & (std::abs(y - vy * dt) <= radius);
-        count += is_inside ? 1 : 0;
-      }
+  // Plain pointers, which a write of a polarity cannot change.
+  float* const xs = local->x.data();
+  float* const ys = local->y.data();
+  float* const dts = local->dt.data();
+  std::int8_t* const polarities = local->polarity.data();
+  for (const Run& run : runs) {
+    // Every event is written, but stays only if the next one does not overwrite it: no branch to mispredict.
+    for (const Entry& entry : run.entries) {
+      const std::int32_t after = entry.t();
+      const float dt = 1e-9f * static_cast<float>(run.since + after);
+      const float x = static_cast<float>(entry.x) - cx;
+      const float y = static_cast<float>(entry.y) - cy;
+      xs[count] = x;
+      ys[count] = y;
+      dts[count] = dt;
+      polarities[count] = entry.polarity();
+      const bool is_inside = (after >= run.first) & (after <= run.last) & (std::abs(x - vx * dt) <= radius) &
+                             (std::abs(y - vy * dt) <= radius);
+      count += is_inside ? 1 : 0;
     }
   }
   local->resize(count);

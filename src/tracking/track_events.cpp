@@ -9,12 +9,6 @@
 
 namespace evo {
 
-namespace {
-
-constexpr double kBetweenDropsS = 0.08;  // looking at every tile costs more than some frames' events more do
-
-}  // namespace
-
 TrackingResult TrackEvents(EventReader* reader, const Camera& camera, const TrackerOptions& options, ThreadPool* pool,
                            const TrackSink& sink, const std::function<void(double)>& progress,
                            const std::function<void(const TrackingView&)>& observe) {
@@ -27,13 +21,9 @@ TrackingResult TrackEvents(EventReader* reader, const Camera& camera, const Trac
   TrackingResult result;
   const TimeNs interval = FromSeconds(options.frame_interval_s);
   const TimeNs half_window = FromSeconds(0.5 * options.longest_window_s);
-  std::optional<TimeNs> dropped;  // frame at which old events were forgotten
 
   const auto process = [&](TimeNs t, const std::function<void()>& read_ahead) {
-    if (!dropped || t - *dropped >= FromSeconds(kBetweenDropsS)) {
-      history.DropBefore(t - tracker->before());
-      dropped = t;
-    }
+    history.DropBefore(t - tracker->before());
     tracker->Process(history, t, read_ahead);
     result.frames.push_back(t);
     if (tracker->detected()) ++result.key_frames;

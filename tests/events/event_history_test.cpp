@@ -132,7 +132,7 @@ TEST(EventHistory, ForgetsWhatIsDropped) {
 }
 
 TEST(EventHistory, HoldsStampsOfAnySize) {
-  // Stamps wrap around in 32 bits every 4.3 s; blocks lie around such an instant, one of them after a long gap.
+  // Those of a slice are held in 32 bits; blocks lie far apart, beyond what 32 bits hold.
   constexpr TimeNs kWrap = TimeNs{1} << 32;
   EventHistory history(kWidth, kHeight);
   for (const TimeNs middle : {kWrap / 2, kWrap, 7 * kWrap, 1000000 * kWrap}) {
@@ -151,16 +151,16 @@ TEST(EventHistory, HoldsStampsOfAnySize) {
   }
 }
 
-TEST(EventHistory, RefusesTooLongAStretch) {
+TEST(EventHistory, RefusesTooLongAWindow) {
   EventHistory history(kWidth, kHeight);
-  history.Append(RandomEvents(10, 0, 1'000'000));
-  const EventColumns late = RandomEvents(10, EventHistory::kLongest + 1'000'000, EventHistory::kLongest + 2'000'000);
-  EXPECT_THROW(history.Append(late), std::length_error);
-  history.DropBefore(2'000'000);
-  history.Append(late);
+  const EventColumns events = RandomEvents(100, 0, 2 * EventHistory::kLongestHalfWindow);
+  history.Append(events);
   LocalEvents local;
-  history.Gather({late.t.front(), 25, 18, 0, 0, 50, 2'000'000}, &local);
-  EXPECT_EQ(local.size(), late.size());
+  MovingPatch patch{EventHistory::kLongestHalfWindow, 25, 18, 0, 0, 50, EventHistory::kLongestHalfWindow};
+  history.Gather(patch, &local);
+  EXPECT_EQ(local.size(), events.size());
+  ++patch.half_window;
+  EXPECT_THROW(history.Gather(patch, &local), std::length_error);
 }
 
 TEST(LocalEvents, ThinsEvenly) {
