@@ -7,6 +7,8 @@
 #include <numeric>
 #include <vector>
 
+#include "tracking/lanes.hpp"
+
 namespace evo {
 
 namespace {
@@ -64,25 +66,43 @@ struct Difference {
   std::array<float, kSpan> weights{};
 };
 
-/// The normal equations of the spline: a band of 3 x 3 blocks.
+constexpr int kTerms = 6;  // of a symmetric 3 x 3 block: the upper half
+constexpr std::array<int, kTerms> kRows{0, 0, 0, 1, 1, 2};
+constexpr std::array<int, kTerms> kColumns{0, 1, 2, 1, 2, 2};
+
+/// Adds to the blocks of each of `kSpan` knots with the ones after it (each term in turn) the products of their weights
+/// and a block. After the weights follow as many zeros.
+EVO_HOT void AddProducts(const std::array<double, 2 * kSpan>& weights, const std::array<double, kTerms>& block,
+                         double* terms) {
+  for (int i = 0; i < kSpan; ++i) {
+    if (weights[i] == 0.0) {
+      terms += kTerms * kSpan;
+      continue;
+    }
+    for (const double term : block) {
+      const double factor = weights[i] * term;
+      for (int d = 0; d < kSpan; ++d) terms[d] += factor * weights[i + d];
+      terms += kSpan;
+    }
+  }
+}
+
+/// The normal equations of the spline: a band of symmetric 3 x 3 blocks.
 class ShakeEquations {
  public:
   explicit ShakeEquations(std::size_t knots)
-      : blocks_(knots * kSpan, Eigen::Matrix3d::Zero()), right_(knots, Eigen::Vector3d::Zero()) {}
+      : terms_(knots * kTerms * kSpan, 0.0), right_(knots, Eigen::Vector3d::Zero()) {}
 
   void Add(const Difference& difference, double weight) {
     const ImageJacobian jacobian = difference.jacobian.cast<double>();
     const Eigen::Matrix3d square = weight * jacobian.transpose() * jacobian;
     const Eigen::Vector3d right = weight * jacobian.transpose() * difference.value.cast<double>();
-    for (int i = 0; i < kSpan; ++i) {
-      const double left = difference.weights[i];
-      if (left == 0.0) continue;
-      right_[difference.first + i] += left * right;
-      for (int k = i; k < kSpan; ++k) {
-        const double both = left * difference.weights[k];
-        if (both != 0.0) Block(difference.first + i, k - i) += both * square;
-      }
-    }
+    std::array<double, 2 * kSpan> weights{};
+    std::ranges::copy(difference.weights, weights.begin());
+    for (int i = 0; i < kSpan; ++i) right_[difference.first + i] += weights[i] * right;
+    std::array<double, kTerms> block;
+    for (int term = 0; term < kTerms; ++term) block[term] = square(kRows[term], kColumns[term]);
+    AddProducts(weights, block, terms_.data() + difference.first * kTerms * kSpan);
   }
 
   std::vector<Eigen::Vector3d> Solve() const {
@@ -92,12 +112,13 @@ class ShakeEquations {
     for (int i = 0; i < knots; ++i) {
       right.segment<3>(3 * i) = right_[i];
       for (int d = 0; d < kSpan && i + d < knots; ++d) {
-        const Eigen::Matrix3d& block = blocks_[i * kSpan + d];
-        for (int r = 0; r < 3; ++r) {
-          for (int c = d ? 0 : r; c < 3; ++c) {
-            const double prior = d == 0 && r == c ? 1.0 / (kShakePx * kShakePx) : 0.0;
-            entries.emplace_back(3 * (i + d) + c, 3 * i + r, block(r, c) + prior);
-          }
+        for (int term = 0; term < kTerms; ++term) {
+          const int row = kRows[term];
+          const int column = kColumns[term];
+          const double value = terms_[(i * kTerms + term) * kSpan + d];
+          const double prior = d == 0 && row == column ? 1.0 / (kShakePx * kShakePx) : 0.0;
+          entries.emplace_back(3 * (i + d) + column, 3 * i + row, value + prior);
+          if (d && row != column) entries.emplace_back(3 * (i + d) + row, 3 * i + column, value);
         }
       }
     }
@@ -112,9 +133,8 @@ class ShakeEquations {
   }
 
  private:
-  Eigen::Matrix3d& Block(int knot, int distance) { return blocks_[knot * kSpan + distance]; }
-
-  std::vector<Eigen::Matrix3d> blocks_;
+  // Of the blocks of each knot with itself, with the next one, ...: first terms, then knots.
+  std::vector<double> terms_;
   std::vector<Eigen::Vector3d> right_;
 };
 

@@ -49,45 +49,32 @@ EVO_HOT void BlendCells(float keep, const float* other, float factor, std::span<
   for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = keep * cells[i] + factor * other[i];
 }
 
-EVO_HOT float SumOf(const float* cells, std::size_t count) {
-  Lanes sum{}, other{};
-  std::size_t i = 0;
-  for (; i + 2 * kLanes <= count; i += 2 * kLanes) {
-    Lanes one, two;
-    Load(cells + i, &one);
-    Load(cells + i + kLanes, &two);
-    sum += one;
-    other += two;
-  }
-  float total = Sum(sum + other);
-  for (; i < count; ++i) total += cells[i];
-  return total;
-}
-
 }  // namespace
 
 DensityMap::DensityMap(int radius_px, int planes)
     : radius_(radius_px), planes_(planes), cells_(static_cast<std::size_t>(planes * side() * side()), 0.0f) {}
 
-double DensityMap::Total() const { return SumOf(cells_.data(), cells_.size()); }
-
 double DensityMap::EffectiveCells() const {
   const double squares = std::inner_product(cells_.begin(), cells_.end(), cells_.begin(), 0.0);
-  const double total = Total();
-  return squares > 0.0 ? total * total / squares : 0.0;
+  return squares > 0.0 ? total_ * total_ / squares : 0.0;
 }
 
-void DensityMap::Clear() { std::ranges::fill(cells_, 0.0f); }
+void DensityMap::Clear() {
+  std::ranges::fill(cells_, 0.0f);
+  total_ = 0.0;
+}
 
 namespace {
 
-EVO_HOT void VoteInto(float* cells, int radius, std::int32_t second, std::span<const float> x, std::span<const float> y,
-                      std::span<const std::int8_t> polarity) {
+/// Returns how many fell inside.
+EVO_HOT std::size_t VoteInto(float* cells, int radius, std::int32_t second, std::span<const float> x,
+                             std::span<const float> y, std::span<const std::int8_t> polarity) {
   const std::ptrdiff_t side = 2 * radius + 1;
   const auto reach = static_cast<float>(radius);
   const auto width = static_cast<float>(side);
   const Lanes zero{};
   const Lanes last = zero + static_cast<float>(2 * radius);
+  LaneInts outside{};
   const auto vote = [&](std::int32_t plane, std::int32_t cell, float w00, float w01, float w10, float w11) {
     float* const at = cells + plane + cell;
     at[0] += w00;
@@ -103,6 +90,7 @@ EVO_HOT void VoteInto(float* cells, int radius, std::int32_t second, std::span<c
     column += reach;
     row += reach;
     const LaneInts inside = (column >= zero) & (row >= zero) & (column < last) & (row < last);
+    outside += 1 + inside;
     column = inside ? column : zero;
     row = inside ? row : zero;
     LaneCells at;
@@ -118,20 +106,25 @@ EVO_HOT void VoteInto(float* cells, int radius, std::int32_t second, std::span<c
       vote(polarity[begin + i] < 0 ? second : 0, at.index[i], w00[i], w01[i], w10[i], w11[i]);
     }
   }
+  std::size_t inside = (x.size() + kLanes - 1) / kLanes * kLanes;
+  for (int i = 0; i < kLanes; ++i) inside -= static_cast<std::size_t>(outside[i]);
+  return inside;
 }
 
 }  // namespace
 
 void DensityMap::Vote(std::span<const float> x, std::span<const float> y, std::span<const std::int8_t> polarity) {
-  VoteInto(cells_.data(), radius_, planes_ == 2 ? side() * side() : 0, x, y, polarity);
+  total_ += static_cast<double>(VoteInto(cells_.data(), radius_, planes_ == 2 ? side() * side() : 0, x, y, polarity));
 }
 
 void DensityMap::Scale(float factor) {
   for (float& cell : cells_) cell *= factor;
+  total_ *= static_cast<double>(factor);
 }
 
 void DensityMap::Blend(float keep, const DensityMap& other, float factor) {
   BlendCells(keep, other.cells_.data(), factor, cells_);
+  total_ = static_cast<double>(keep) * total_ + static_cast<double>(factor) * other.total_;
 }
 
 DensityMap DensityMap::Warped(const Eigen::Matrix2d& linear, const Eigen::Vector2d& perspective) const {
@@ -161,56 +154,90 @@ DensityMap DensityMap::Warped(const Eigen::Matrix2d& linear, const Eigen::Vector
       }
     }
   }
+  warped.total_ = std::accumulate(warped.cells_.begin(), warped.cells_.end(), 0.0);
   return warped;
 }
 
-void AssociationField::Weigh() {
-  centre_.assign(static_cast<std::size_t>(side_ * width_), 0.0f);
-  for (int r = 1; r + 1 < side_; ++r) {
-    for (int c = 1; c + 1 < side_; ++c) {
-      const double distance = std::hypot(r - radius_, c - radius_) / radius_;
-      const double by_distance = std::max(0.0, 1.0 - distance * distance);
-      const double weight = weight_ == Weight::kEven ? 1.0 : by_distance * by_distance;
-      centre_[static_cast<std::size_t>(r * width_ + c)] = static_cast<float>(weight);
+namespace {
+
+/// Smooths the planes of maps of one size with one Gaussian. Kept, with its memory, by each thread.
+class Smoother {
+ public:
+  Smoother(int side, double sigma_px, AssociationField::Weight weight)
+      : side_(side),
+        sigma_px_(sigma_px),
+        weight_(weight),
+        kernel_(static_cast<std::size_t>(std::min(side / 2, GaussianReach(sigma_px))) + 1),
+        margin_(static_cast<int>(kernel_.size())),
+        width_((side + margin_ + kLanes - 1) / kLanes * kLanes),
+        plane_(static_cast<std::size_t>((side + 2 * margin_) * width_)),
+        rows_(plane_.size()),
+        smooth_(plane_.size()),
+        weights_(static_cast<std::size_t>(side * width_)) {
+    FillGaussianKernel(sigma_px, kernel_);
+    const int radius = side / 2;
+    for (int r = 1; r + 1 < side; ++r) {
+      for (int c = 1; c + 1 < side; ++c) {
+        const double distance = std::hypot(r - radius, c - radius) / radius;
+        const double by_distance = std::max(0.0, 1.0 - distance * distance);
+        const double cell = weight == AssociationField::Weight::kEven ? 1.0 : by_distance * by_distance;
+        weights_[static_cast<std::size_t>(r * width_ + c)] = static_cast<float>(cell);
+      }
     }
   }
-}
 
-void AssociationField::Smooth(const float* plane) {
-  // Rows run into one another, but only within the empty margin between them.
-  for (int r = 0; r < side_; ++r) std::copy_n(plane + r * side_, side_, plane_.data() + (margin_ + r) * width_);
-  const std::ptrdiff_t first = margin_ * width_;
-  ConvolveCells(kernel_, plane_.data() + first, 1, side_ * width_, rows_.data() + first);
-  ConvolveCells(kernel_, rows_.data() + first, width_, side_ * width_, smooth_.data() + first);
-}
+  static Smoother& Of(int side, double sigma_px, AssociationField::Weight weight) {
+    thread_local std::vector<Smoother> all;
+    for (Smoother& one : all) {
+      if (one.side_ == side && one.sigma_px_ == sigma_px && one.weight_ == weight) return one;
+    }
+    if (all.size() == kMost) all.clear();
+    return all.emplace_back(side, sigma_px, weight);
+  }
+
+  void Smooth(const float* plane) {
+    // Rows run into one another, but only within the empty margin between them.
+    for (int r = 0; r < side_; ++r) std::copy_n(plane + r * side_, side_, plane_.data() + (margin_ + r) * width_);
+    const std::ptrdiff_t first = margin_ * width_;
+    ConvolveCells(kernel_, plane_.data() + first, 1, side_ * width_, rows_.data() + first);
+    ConvolveCells(kernel_, rows_.data() + first, width_, side_ * width_, smooth_.data() + first);
+  }
+
+  const float* smooth() const { return smooth_.data() + margin_ * width_; }
+  const float* weights() const { return weights_.data(); }  ///< of each cell, in rows as wide
+  int width() const { return width_; }
+
+ private:
+  static constexpr std::size_t kMost = 16;  // as many are in use at once, at most
+
+  int side_;
+  double sigma_px_;
+  AssociationField::Weight weight_;
+  std::vector<float> kernel_;
+  int margin_;  // empty rows above and below the planes that follow, and cells at least between two rows
+  int width_;   // of their rows
+  std::vector<float> plane_, rows_, smooth_, weights_;
+};
+
+}  // namespace
 
 void AssociationField::Build(const DensityMap& map, double sigma_px, double outlier_share, Weight weight) {
-  const auto reach = std::min(map.radius(), GaussianReach(sigma_px));
   const auto cells = static_cast<std::size_t>(map.planes() * map.side() * map.side());
-  if (map.side() != side_ || reach != margin_ - 1 || weight != weight_ || table_.size() < cells) {
-    radius_ = map.radius();
+  radius_ = map.radius();
+  sigma_px_ = sigma_px;
+  if (map.side() != side_ || table_.size() < cells) {
     side_ = map.side();
-    margin_ = reach + 1;
-    width_ = (side_ + margin_ + kLanes - 1) / kLanes * kLanes;
-    const auto padded = static_cast<std::size_t>((side_ + 2 * margin_) * width_);
-    plane_.assign(padded, 0.0f);
-    rows_.assign(padded, 0.0f);
-    smooth_.assign(padded, 0.0f);
     // What is at the edge stays zero, and what is read or written beyond the last cell.
     table_.assign(cells + static_cast<std::size_t>(side_ + kLanes), Pull::Zero());
-    weight_ = weight;
-    Weigh();
   }
-  sigma_px_ = sigma_px;
-  kernel_.resize(static_cast<std::size_t>(reach) + 1);
-  FillGaussianKernel(sigma_px, kernel_);
+  Smoother& smoother = Smoother::Of(side_, sigma_px, weight);
   const double mean_density = map.Total() / static_cast<double>(cells);
   const auto stray = static_cast<float>(std::max(1e-12, outlier_share * mean_density));
   const auto half_variance = static_cast<float>(0.5 * sigma_px * sigma_px);
   const auto longest = static_cast<float>(kLongestPull * sigma_px);
   for (int p = 0; p < map.planes(); ++p) {
-    Smooth(map.plane(p));
-    TabulatePulls(smooth_.data() + margin_ * width_, centre_.data(), width_, side_, stray, half_variance, longest,
+    smoother.Smooth(map.plane(p));
+    TabulatePulls(smoother.smooth(), smoother.weights(), smoother.width(), side_, stray, half_variance, longest,
                   table_[static_cast<std::size_t>(p * side_ * side_)].data());
   }
 }
@@ -218,7 +245,7 @@ void AssociationField::Build(const DensityMap& map, double sigma_px, double outl
 namespace {
 
 /// The sums of vote x pull x (1, u, v) over the cells of a plane that lie in the patch.
-struct PullMoments {
+struct VotedPulls {
   FourLanes one{}, u{}, v{};
 };
 
@@ -247,7 +274,7 @@ struct Columns {
 };
 
 EVO_HOT void AddMoments(const float* votes, const float* pulls, int radius, const Eigen::Matrix2f& linear, float reach,
-                        PullMoments* moments) {
+                        VotedPulls* moments) {
   const int side = 2 * radius + 1;
   for (int r = 0; r < side; ++r) {
     const auto v = static_cast<float>(r - radius);
@@ -278,15 +305,15 @@ EVO_HOT void AddMoments(const float* votes, const float* pulls, int radius, cons
 
 }  // namespace
 
-Eigen::Matrix<double, 2, 3> AssociationField::OwnMoments(const DensityMap& map, const Eigen::Matrix2d& linear,
-                                                         double patch_radius_px) const {
-  PullMoments m;
+PullMoments AssociationField::OwnMoments(const DensityMap& map, const Eigen::Matrix2d& linear,
+                                         double patch_radius_px) const {
+  VotedPulls m;
   for (int p = 0; p < map.planes(); ++p) {
     AddMoments(map.plane(p), table_[static_cast<std::size_t>(p * side_ * side_)].data(), radius_, linear.cast<float>(),
                static_cast<float>(patch_radius_px), &m);
   }
-  if (!(m.one[0] > 0.0f)) return Eigen::Matrix<double, 2, 3>::Zero();
-  Eigen::Matrix<double, 2, 3> moments;
+  if (!(m.one[0] > 0.0f)) return PullMoments::Zero();
+  PullMoments moments;
   moments << m.one[1], m.u[1], m.v[1], m.one[2], m.u[2], m.v[2];
   return moments / m.one[0];
 }

@@ -15,6 +15,8 @@ constexpr int kYouth = 12;             // frames after which a feature is judged
 constexpr double kSlowestPxS = 4.0;    // flow to which a change of shape is compared, at least
 constexpr double kSlowdown = 0.9;      // of a feature without events, from frame to frame
 constexpr double kFlowShare = 0.28;    // of the predicted flow's error that a window corrects, usually
+constexpr double kLeastNews = 0.4;     // share of a window that a template has not seen, from which on it learns
+constexpr int kSlopeFrames = 2;        // the slopes of so many features are learnt in turn
 constexpr double kSlopeGain = 0.1;     // share of what one frame tells about the slope of a feature's plane
 constexpr double kDepthGain = 0.25;    // and about its depth
 constexpr double kSteepest = 1e-3;     // such a slope for a flow of 1 px/s, 1/px^2
@@ -193,6 +195,7 @@ bool FeatureTracker::Advance(const FeatureAlignment& alignment, double step_s, T
   const PatchMotion& start = alignment.start;
   const PatchMotion& motion = is_found ? alignment.motion : start;
   ++feature->frames;
+  feature->unlearnt_s += step_s;
   feature->half_window = alignment.half_window;
   feature->position = alignment.Landed();
   feature->linear = motion.linear;
@@ -204,7 +207,8 @@ bool FeatureTracker::Advance(const FeatureAlignment& alignment, double step_s, T
         (motion.linear * start.linear.inverse() - Eigen::Matrix2d::Identity()) / step_s;
     feature->oddity.Add(motion.offset, unexpected_rate / (motion.flow.norm() + kSlowestPxS), alignment.stray_share);
     LearnSlope(unexpected_rate, feature);
-    UpdateTemplate(alignment.events, motion, step_s, feature);
+    feature->own_pull = alignment.own_pull;
+    UpdateTemplate(alignment.events, motion, feature);
   } else {
     feature->flow = kSlowdown * start.flow;
     feature->told_flow = feature->flow;
@@ -230,6 +234,7 @@ void FeatureTracker::LearnDepths(double step_s) {
   pool_->ForEach(
       features_.size(),
       [&](std::size_t i) {
+        if ((features_[i].id + features_[i].frames) % kSlopeFrames != 0) return;
         const auto slope = SurfaceSlope(depths, depths[i]);
         if (slope) features_[i].slope = *slope;
       },
@@ -272,16 +277,22 @@ bool FeatureTracker::Fit(const TrackedFeature& feature, bool coarse_first, Featu
   thread_local AssociationField field;
   PatchMotion& motion = alignment->motion;
   motion = alignment->start;
-  const auto align = [&](double sigma_px, int iterations, bool with_linear) {
-    const auto radius = static_cast<double>(options_.patch_radius_px);
-    field.Build(feature.events, sigma_px, options_.outlier_share);
-    return AlignToTemplate(alignment->events, field, planes(),
-                           {iterations, radius, ToSeconds(alignment->half_window), options_.flow_prior,
-                            options_.affine_prior, field.OwnMoments(feature.events, motion.linear, radius)},
-                           with_linear, &motion);
+  const auto radius = static_cast<double>(options_.patch_radius_px);
+  const auto build = [&](double sigma_px) { field.Build(feature.events, sigma_px, options_.outlier_share); };
+  const auto own_pull = [&] { return field.OwnMoments(feature.events, motion.linear, radius); };
+  const auto align = [&](const PullMoments& own, int iterations, bool with_linear) {
+    return AlignToTemplate(
+        alignment->events, field, planes(),
+        {iterations, radius, ToSeconds(alignment->half_window), options_.flow_prior, options_.affine_prior, own},
+        with_linear, &motion);
   };
-  if (coarse_first) align(options_.coarse_sigma_px, kCoarseIterations, false);
-  const AlignmentQuality quality = align(options_.fine_sigma_px, options_.iterations, true);
+  if (coarse_first) {
+    build(options_.coarse_sigma_px);
+    align(own_pull(), kCoarseIterations, false);
+  }
+  build(options_.fine_sigma_px);
+  alignment->own_pull = feature.own_pull ? *feature.own_pull : own_pull();
+  const AlignmentQuality quality = align(alignment->own_pull, options_.iterations, true);
   alignment->stray_share = 1.0 - quality.inlier_share;
   const double scale = feature.scale * std::sqrt(std::abs(motion.linear.determinant()));
   return quality.inlier_share >= options_.fewest_inliers && quality.residual_px <= options_.largest_residual_px &&
@@ -289,12 +300,15 @@ bool FeatureTracker::Fit(const TrackedFeature& feature, bool coarse_first, Featu
          scale > 1.0 / options_.largest_scale;
 }
 
-void FeatureTracker::UpdateTemplate(const LocalEvents& events, const PatchMotion& motion, double step_s,
+void FeatureTracker::UpdateTemplate(const LocalEvents& events, const PatchMotion& motion,
                                     TrackedFeature* feature) const {
   // A running mean at first, then one that forgets: the patch changes as it comes nearer. A window that mostly repeats
   // the last one has little news, and all that it would add is its own error of alignment.
-  const double news = std::min(1.0, step_s / (2.0 * ToSeconds(feature->half_window)));
-  const double gain = std::max(1.0 - std::pow(1.0 - options_.template_gain, news), 1.0 / feature->frames);
+  const double news = std::min(1.0, feature->unlearnt_s / (2.0 * ToSeconds(feature->half_window)));
+  if (news < kLeastNews) return;
+  feature->unlearnt_s = 0.0;
+  ++feature->windows;
+  const double gain = std::max(1.0 - std::pow(1.0 - options_.template_gain, news), 1.0 / feature->windows);
   thread_local std::optional<DensityMap> window;
   if (!window || window->side() != feature->events.side() || window->planes() != feature->events.planes()) {
     window.emplace(feature->events.radius(), feature->events.planes());
@@ -312,6 +326,7 @@ void FeatureTracker::UpdateTemplate(const LocalEvents& events, const PatchMotion
     feature->scale *= growth;
     feature->linear.setIdentity();
   }
+  feature->own_pull.reset();
 }
 
 }  // namespace evo

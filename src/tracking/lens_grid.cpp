@@ -1,6 +1,5 @@
 #include "evo/tracking/lens_grid.hpp"
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -11,34 +10,26 @@ namespace {
 
 constexpr double kStep = 1e-4;  // on the plane z = 1, of numeric derivatives
 
-PixelGeometry GeometryAt(const Camera& camera, const Eigen::Vector2d& pixel) {
-  PixelGeometry geometry;
+}  // namespace
+
+LensGrid::Point LensGrid::MakePoint(const Camera& camera, const Eigen::Vector2d& pixel) {
+  Point point;
   const auto x = camera.Undistort(pixel);
-  if (!x) return geometry;
-  geometry.normalized = *x;
+  if (!x) return point;
+  point.normalized = *x;
   for (int axis = 0; axis < 2; ++axis) {
     const Eigen::Vector2d step = kStep * Eigen::Vector2d::Unit(axis);
-    geometry.by_normalized.col(axis) = (camera.Distort(*x + step) - camera.Distort(*x - step)) / (2.0 * kStep);
+    point.by_normalized.col(axis) = (camera.Distort(*x + step) - camera.Distort(*x - step)) / (2.0 * kStep);
   }
-  const Eigen::Vector3d ray = x->homogeneous();
-  for (int axis = 0; axis < 3; ++axis) {
-    const Eigen::Vector3d turned = Eigen::Vector3d::Unit(axis).cross(ray);
-    geometry.by_rotation.col(axis) = geometry.by_normalized * (turned.head<2>() - *x * turned.z());
-  }
-  return geometry;
+  point.by_pixel = point.by_normalized.inverse();
+  return point;
 }
-
-}  // namespace
 
 LensGrid::LensGrid(const Camera& camera)
     : focal_px_(camera.focal_px()), columns_(camera.width() / kSpacingPx + 2), rows_(camera.height() / kSpacingPx + 2) {
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
-      const PixelGeometry geometry = GeometryAt(camera, Eigen::Vector2d(column, row) * kSpacingPx);
-      const bool known = geometry.known();
-      Point point{geometry, Eigen::Matrix2d::Zero()};
-      if (known) point.by_pixel = geometry.by_normalized.inverse();
-      points_.push_back(point);
+      points_.push_back(MakePoint(camera, Eigen::Vector2d(column, row) * kSpacingPx));
     }
   }
 }
@@ -47,8 +38,14 @@ PixelGeometry LensGrid::At(const Eigen::Vector2d& pixel) const {
   const int column = std::clamp(static_cast<int>(std::lround(pixel.x() / kSpacingPx)), 0, columns_ - 1);
   const int row = std::clamp(static_cast<int>(std::lround(pixel.y() / kSpacingPx)), 0, rows_ - 1);
   const Point& point = points_[static_cast<std::size_t>(row * columns_ + column)];
-  PixelGeometry geometry = point.geometry;
-  geometry.normalized += point.by_pixel * (pixel - Eigen::Vector2d(column, row) * kSpacingPx);
+  PixelGeometry geometry;
+  geometry.normalized = point.normalized + point.by_pixel * (pixel - Eigen::Vector2d(column, row) * kSpacingPx);
+  geometry.by_normalized = point.by_normalized;
+  const double x = geometry.normalized.x();
+  const double y = geometry.normalized.y();
+  Eigen::Matrix<double, 2, 3> turned;  // of the point on the plane z = 1, for a turn about each axis
+  turned << -x * y, 1.0 + x * x, -y, -1.0 - y * y, x * y, x;
+  geometry.by_rotation = point.by_normalized * turned;
   return geometry;
 }
 

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <random>
 #include <vector>
 
@@ -50,6 +52,36 @@ TEST(DensityMap, ManyVoteLikeOneByOne) {
       EXPECT_NEAR(together.plane(0)[i], apart.plane(0)[i], 1e-5) << i;
     }
   }
+}
+
+TEST(DensityMap, TotalIsTheSumOfTheCells) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<float> place(-6.0f, 6.0f);
+  const auto random_map = [&] {
+    DensityMap map(5, 2);
+    for (int i = 0; i < 20; ++i) map.Vote(place(random), place(random), i % 2, 0.1f * static_cast<float>(i));
+    std::vector<float> x, y;
+    for (int i = 0; i < 61; ++i) {
+      x.push_back(place(random));
+      y.push_back(place(random));
+    }
+    map.Vote(x, y, std::vector<std::int8_t>(x.size(), 1));
+    return map;
+  };
+  const auto expect_sum = [](const DensityMap& map) {
+    double sum = 0.0;
+    for (int p = 0; p < 2; ++p) sum = std::accumulate(map.plane(p), map.plane(p) + map.side() * map.side(), sum);
+    EXPECT_NEAR(map.Total(), sum, 1e-4 * sum);
+  };
+  DensityMap map = random_map();
+  expect_sum(map);
+  map.Scale(0.3f);
+  expect_sum(map);
+  map.Blend(0.8f, random_map(), 0.1f);
+  expect_sum(map);
+  expect_sum(map.Warped(Eigen::Rotation2Dd(0.4).toRotationMatrix()));
+  map.Clear();
+  EXPECT_EQ(map.Total(), 0.0);
 }
 
 TEST(DensityMap, WarpMovesCellsAndKeepsTheNumberOfEvents) {

@@ -19,7 +19,7 @@ class DensityMap {
   int planes() const { return planes_; }
   int PlaneOf(std::int8_t polarity) const { return planes_ == 2 && polarity < 0 ? 1 : 0; }
   const float* plane(int p) const { return cells_.data() + p * side() * side(); }
-  double Total() const;
+  double Total() const { return total_; }
   /// Number of cells that the events would fill if they were spread evenly: (sum n)^2 / sum n^2.
   double EffectiveCells() const;
 
@@ -37,6 +37,7 @@ class DensityMap {
     const int r = static_cast<int>(row);
     const float fx = column - static_cast<float>(c);
     const float fy = row - static_cast<float>(r);
+    total_ += weight;
     float* cell = cells_.data() + (plane * side() + r) * side() + c;
     cell[0] += weight * (1.0f - fx) * (1.0f - fy);
     cell[1] += weight * fx * (1.0f - fy);
@@ -52,7 +53,11 @@ class DensityMap {
   int radius_;
   int planes_;
   std::vector<float> cells_;
+  double total_ = 0.0;
 };
+
+/// The sums of pull x (1, u, v): row 0 for the pull along x, row 1 along y.
+using PullMoments = Eigen::Matrix<double, 2, 3>;
 
 /// The E step of expectation maximisation with Gaussian soft association, tabulated. For an event at u and template
 /// events p_j with density D(u) = sum_j N(u; p_j, sigma^2), the expected partner lies at u + sigma^2 grad D / D (the
@@ -88,11 +93,10 @@ class AssociationField {
     return above + fy * (below - above);
   }
 
-  /// The sums of pull x (1, u, v) that the map's own events feel, per unit of their weight: row 0 for the pull along x,
-  /// row 1 along y. They are not zero (a blurred density pulls inwards), and are what a perfectly aligned window would
-  /// feel too. Such a window sees the events at u with linear * u inside a square patch of `patch_radius_px`.
-  Eigen::Matrix<double, 2, 3> OwnMoments(const DensityMap& map, const Eigen::Matrix2d& linear,
-                                         double patch_radius_px) const;
+  /// What the map's own events feel, per unit of their weight. It is not zero (a blurred density pulls inwards), and
+  /// are what a perfectly aligned window would feel too. Such a window sees the events at u with linear * u inside a
+  /// square patch of `patch_radius_px`.
+  PullMoments OwnMoments(const DensityMap& map, const Eigen::Matrix2d& linear, double patch_radius_px) const;
 
   /// What one event of the map tells about where the pattern is, 1/px^2, as far as this density and the other one
   /// agree: the mean of grad D grad D'^T / (D D'), of one density with itself its Fisher information. Small along a
@@ -101,18 +105,10 @@ class AssociationField {
   Eigen::Matrix2d Information(const DensityMap& map, const AssociationField& other) const;
 
  private:
-  void Weigh();
-  void Smooth(const float* plane);
-
   int radius_ = 0;
   int side_ = 0;
   double sigma_px_ = 1.0;
-  Weight weight_ = Weight::kCentre;
   std::vector<Pull> table_;  // per plane and cell
-  int margin_ = 0;           // empty rows above and below the planes that follow, and cells at least between two rows
-  int width_ = 0;            // of their rows
-  std::vector<float> kernel_, plane_, rows_, smooth_;
-  std::vector<float> centre_;  // weight of each cell, in rows as wide
 };
 
 }  // namespace evo

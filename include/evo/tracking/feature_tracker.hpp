@@ -32,6 +32,9 @@ struct TrackedFeature {
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();        ///< of its plane, see EgoMotion::At
   double scale = 1.0;                                     ///< of the patch against its first window
   DensityMap events;                                      ///< the template
+  std::optional<PullMoments> own_pull = {};               ///< of the template since it learnt, see AssociationField
+  int windows = 1;                                        ///< that the template has learnt from
+  double unlearnt_s = 0.0;                                ///< time since the last of them
   double information = 0.0;                               ///< see AssociationField, in the worst direction, at birth
   int frames = 1;                                         ///< lifetime so far
   OddityMeans oddity = {};                                ///< over its life so far
@@ -56,6 +59,7 @@ struct FeatureAlignment {
   TimeNs half_window = 0;
   LocalEvents events;
   double stray_share = 0.0;  ///< of the events, see AlignmentQuality
+  PullMoments own_pull;      ///< of the template, see AssociationField
 
   /// Where the feature is now, px.
   Eigen::Vector2d Landed() const { return state == State::kFound ? position + motion.offset : position; }
@@ -102,8 +106,7 @@ class FeatureTracker : public Tracker {
   void WithdrawOdd();
   /// `unexpected_rate`: by how much the patch changed faster than its plane's slope made expect, 1/s.
   void LearnSlope(const Eigen::Matrix2d& unexpected_rate, TrackedFeature* feature) const;
-  void UpdateTemplate(const LocalEvents& events, const PatchMotion& motion, double step_s,
-                      TrackedFeature* feature) const;
+  void UpdateTemplate(const LocalEvents& events, const PatchMotion& motion, TrackedFeature* feature) const;
 
   // In feature_birth.cpp.
   void Refill(const EventHistory& history, TimeNs t);

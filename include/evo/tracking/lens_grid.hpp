@@ -24,14 +24,18 @@ class LensGrid {
   explicit LensGrid(const Camera& camera);
 
   double focal_px() const { return focal_px_; }
-  /// Of the nearest grid point, but for `normalized`, which is extrapolated from it to `pixel`.
+  /// By the derivative at the nearest grid point.
   PixelGeometry At(const Eigen::Vector2d& pixel) const;
 
  private:
+  /// As small as can be, so that all stay in the cache. Zero where not known.
   struct Point {
-    PixelGeometry geometry;
-    Eigen::Matrix2d by_pixel;  ///< of `normalized`; zero where not known
+    Eigen::Vector2d normalized = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d by_normalized = Eigen::Matrix2d::Zero();
+    Eigen::Matrix2d by_pixel = Eigen::Matrix2d::Zero();  // its inverse
   };
+
+  static Point MakePoint(const Camera& camera, const Eigen::Vector2d& pixel);
 
   double focal_px_;
   int columns_;
