@@ -160,13 +160,15 @@ void EventHistory::Gather(const MovingPatch& patch, LocalEvents* local) const {
       visited += entries.size();
     }
   }
-  local->resize(visited + 1);
+  // Of a size that never shrinks, as growing sets what it adds to zero.
+  thread_local LocalEvents all;
+  if (all.size() < visited + 1) all.resize(visited + 1);
   std::size_t count = 0;
   // Plain pointers, which a write of a polarity cannot change.
-  float* const xs = local->x.data();
-  float* const ys = local->y.data();
-  float* const dts = local->dt.data();
-  std::int8_t* const polarities = local->polarity.data();
+  float* const xs = all.x.data();
+  float* const ys = all.y.data();
+  float* const dts = all.dt.data();
+  std::int8_t* const polarities = all.polarity.data();
   for (const Run& run : runs) {
     // Every event is written, but stays only if the next one does not overwrite it: no branch to mispredict.
     for (const Entry& entry : run.entries) {
@@ -183,7 +185,10 @@ void EventHistory::Gather(const MovingPatch& patch, LocalEvents* local) const {
       count += is_inside ? 1 : 0;
     }
   }
-  local->resize(count);
+  local->x.assign(xs, xs + count);
+  local->y.assign(ys, ys + count);
+  local->dt.assign(dts, dts + count);
+  local->polarity.assign(polarities, polarities + count);
 }
 
 }  // namespace evo

@@ -33,7 +33,7 @@ struct TrackerOptions {
   int fewest_events = 50;           ///< in a new feature's window
   int fewest_events_alive = 15;     ///< lost with fewer in a window twice as long,
   double resting_flow_px_s = 20.0;  ///< unless it moves no faster than this: then it stays without events
-  int most_events = 300;            ///< in a patch's window: of more, an even sample is taken
+  int most_events = 250;            ///< in a patch's window: of more, an even sample is taken
 
   // Expectation maximisation.
   double flow_sigma_px = 1.5;    ///< soft association of events among themselves (EM 1), but for the last window
