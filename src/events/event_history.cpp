@@ -131,6 +131,12 @@ void EventHistory::Gather(const MovingPatch& patch, LocalEvents* local) const {
   const TimeNs begin = std::max(patch.t - patch.half_window, oldest_);
   const TimeNs last = patch.t + patch.half_window;
 
+  /// Entries of a slice that lie side by side.
+  struct Run {
+    std::span<const Entry> entries;
+    std::int32_t since;        // ns from the instant asked for to the slice's begin
+    std::int32_t first, last;  // of the stamps in the window
+  };
   // All runs first, so that they are on their way into the cache.
   thread_local std::vector<Run> runs;
   runs.clear();

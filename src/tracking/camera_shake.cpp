@@ -99,7 +99,10 @@ class ShakeEquations {
     const Eigen::Vector3d right = weight * jacobian.transpose() * difference.value.cast<double>();
     std::array<double, 2 * kSpan> weights{};
     std::ranges::copy(difference.weights, weights.begin());
-    for (int i = 0; i < kSpan; ++i) right_[difference.first + i] += weights[i] * right;
+    for (int i = 0; i < kSpan; ++i) {
+      // Beyond the last knot there are no weights.
+      if (weights[i] != 0.0) right_[difference.first + i] += weights[i] * right;
+    }
     std::array<double, kTerms> block;
     for (int term = 0; term < kTerms; ++term) block[term] = square(kRows[term], kColumns[term]);
     AddProducts(weights, block, terms_.data() + difference.first * kTerms * kSpan);

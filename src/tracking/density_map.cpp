@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <numeric>
+#include <tuple>
 
 #include "tracking/event_lanes.hpp"
 #include "tracking/gaussian_kernel.hpp"
@@ -67,14 +69,14 @@ void DensityMap::Clear() {
 namespace {
 
 /// Returns how many fell inside.
-EVO_HOT std::size_t VoteInto(float* cells, int radius, std::int32_t second, std::span<const float> x,
-                             std::span<const float> y, std::span<const std::int8_t> polarity) {
+EVO_HOT std::int32_t VoteInto(float* cells, int radius, std::int32_t second, std::span<const float> x,
+                              std::span<const float> y, std::span<const std::int8_t> polarity) {
   const std::ptrdiff_t side = 2 * radius + 1;
   const auto reach = static_cast<float>(radius);
   const auto width = static_cast<float>(side);
   const Lanes zero{};
   const Lanes last = zero + static_cast<float>(2 * radius);
-  LaneInts outside{};
+  LaneInts votes{};
   const auto vote = [&](std::int32_t plane, std::int32_t cell, float w00, float w01, float w10, float w11) {
     float* const at = cells + plane + cell;
     at[0] += w00;
@@ -90,7 +92,7 @@ EVO_HOT std::size_t VoteInto(float* cells, int radius, std::int32_t second, std:
     column += reach;
     row += reach;
     const LaneInts inside = (column >= zero) & (row >= zero) & (column < last) & (row < last);
-    outside += 1 + inside;
+    votes -= inside;  // which is -1 where it is true
     column = inside ? column : zero;
     row = inside ? row : zero;
     LaneCells at;
@@ -106,15 +108,15 @@ EVO_HOT std::size_t VoteInto(float* cells, int radius, std::int32_t second, std:
       vote(polarity[begin + i] < 0 ? second : 0, at.index[i], w00[i], w01[i], w10[i], w11[i]);
     }
   }
-  std::size_t inside = (x.size() + kLanes - 1) / kLanes * kLanes;
-  for (int i = 0; i < kLanes; ++i) inside -= static_cast<std::size_t>(outside[i]);
-  return inside;
+  std::int32_t all = 0;
+  for (int i = 0; i < kLanes; ++i) all += votes[i];
+  return all;
 }
 
 }  // namespace
 
 void DensityMap::Vote(std::span<const float> x, std::span<const float> y, std::span<const std::int8_t> polarity) {
-  total_ += static_cast<double>(VoteInto(cells_.data(), radius_, planes_ == 2 ? side() * side() : 0, x, y, polarity));
+  total_ += VoteInto(cells_.data(), radius_, planes_ == 2 ? side() * side() : 0, x, y, polarity);
 }
 
 void DensityMap::Scale(float factor) {
@@ -165,8 +167,6 @@ class Smoother {
  public:
   Smoother(int side, double sigma_px, AssociationField::Weight weight)
       : side_(side),
-        sigma_px_(sigma_px),
-        weight_(weight),
         kernel_(static_cast<std::size_t>(std::min(side / 2, GaussianReach(sigma_px))) + 1),
         margin_(static_cast<int>(kernel_.size())),
         width_((side + margin_ + kLanes - 1) / kLanes * kLanes),
@@ -187,12 +187,8 @@ class Smoother {
   }
 
   static Smoother& Of(int side, double sigma_px, AssociationField::Weight weight) {
-    thread_local std::vector<Smoother> all;
-    for (Smoother& one : all) {
-      if (one.side_ == side && one.sigma_px_ == sigma_px && one.weight_ == weight) return one;
-    }
-    if (all.size() == kMost) all.clear();
-    return all.emplace_back(side, sigma_px, weight);
+    thread_local std::map<std::tuple<int, double, AssociationField::Weight>, Smoother> smoothers;
+    return smoothers.try_emplace({side, sigma_px, weight}, side, sigma_px, weight).first->second;
   }
 
   void Smooth(const float* plane) {
@@ -208,11 +204,7 @@ class Smoother {
   int width() const { return width_; }
 
  private:
-  static constexpr std::size_t kMost = 16;  // as many are in use at once, at most
-
   int side_;
-  double sigma_px_;
-  AssociationField::Weight weight_;
   std::vector<float> kernel_;
   int margin_;  // empty rows above and below the planes that follow, and cells at least between two rows
   int width_;   // of their rows

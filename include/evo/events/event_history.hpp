@@ -98,13 +98,6 @@ class EventHistory {
   };
   static constexpr TimeNs kSlice = 10'000'000;
 
-  /// Entries of a slice that lie side by side.
-  struct Run {
-    std::span<const Entry> entries;
-    std::int32_t since;        // ns from the instant asked for to the slice's begin
-    std::int32_t first, last;  // of the stamps in the window
-  };
-
   std::size_t TileOf(unsigned x, unsigned y) const { return y / kTilePx * columns_ + x / kTilePx; }
   /// Adds events [begin, end), which lie in it, to the slice from `t` on: the newest one or a new one.
   void AddToSlice(TimeNs t, const EventColumns& events, std::size_t begin, std::size_t end);

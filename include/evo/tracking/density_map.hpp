@@ -93,8 +93,8 @@ class AssociationField {
     return above + fy * (below - above);
   }
 
-  /// What the map's own events feel, per unit of their weight. It is not zero (a blurred density pulls inwards), and
-  /// are what a perfectly aligned window would feel too. Such a window sees the events at u with linear * u inside a
+  /// What the map's own events feel, per unit of their weight. It is not zero (a blurred density pulls inwards), and is
+  /// what a perfectly aligned window would feel too. Such a window sees the events at u with linear * u inside a
   /// square patch of `patch_radius_px`.
   PullMoments OwnMoments(const DensityMap& map, const Eigen::Matrix2d& linear, double patch_radius_px) const;
 

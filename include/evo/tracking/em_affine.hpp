@@ -37,7 +37,7 @@ struct AlignmentOptions {
   double flow_prior = 20.0;    ///< weight of the initial flow, in events
   double affine_prior = 10.0;  ///< weight of the initial linear part, in events
   /// Of the field, see AssociationField: what an aligned window feels, no reason to move.
-  Eigen::Matrix<double, 2, 3> own_moments = Eigen::Matrix<double, 2, 3>::Zero();
+  PullMoments own_moments = PullMoments::Zero();
 };
 
 struct AlignmentQuality {
