@@ -19,18 +19,29 @@ constexpr int kNearest = 5;  // samples asked for what is usual
 
 /// Of samples near a place.
 struct Neighbours {
-  std::vector<float> x, y;     // px from it
-  std::vector<float> nearer;   // its inverse depth over that of the place, less 1
-  std::vector<float> weights;  // from 0 far away to 1
+  std::vector<float> x, y;    // px from it
+  std::vector<float> nearer;  // its inverse depth over that of the place, less 1
+  std::vector<float> weight;  // from 0 far away to 1
 
-  void Clear() {
-    for (auto* column : {&x, &y, &nearer, &weights}) column->clear();
+  void Resize(std::size_t count) {
+    for (auto* column : {&x, &y, &nearer, &weight}) column->resize(count);
   }
-  void Add(const Eigen::Vector2d& away, double how_much_nearer, double weight) {
-    x.push_back(static_cast<float>(away.x()));
-    y.push_back(static_cast<float>(away.y()));
-    nearer.push_back(static_cast<float>(how_much_nearer));
-    weights.push_back(static_cast<float>(weight));
+
+  void Find(const std::vector<DepthSample>& samples, const DepthSample& at) {
+    Resize(samples.size() + 1);
+    std::size_t count = 0;
+    // Every sample is written, but stays only if the next one does not overwrite it: no branch to mispredict.
+    for (const auto& sample : samples) {
+      const Eigen::Vector2d away = sample.position - at.position;
+      const double distance = away.squaredNorm() / (kReachPx * kReachPx);
+      x[count] = static_cast<float>(away.x());
+      y[count] = static_cast<float>(away.y());
+      nearer[count] = static_cast<float>(sample.inverse_depth / at.inverse_depth - 1.0);
+      weight[count] = static_cast<float>(1.0 - distance);
+      const bool is_near = (distance < 1.0) & (distance > 0.0) & (sample.inverse_depth > 0.0);
+      count += is_near ? 1 : 0;
+    }
+    Resize(count);
   }
 };
 
@@ -49,7 +60,7 @@ EVO_HOT void SumSlopes(const Neighbours& neighbours, const Eigen::Vector2f& slop
     Load(neighbours.x, i, 0.0f, &x);
     Load(neighbours.y, i, 0.0f, &y);
     Load(neighbours.nearer, i, 0.0f, &nearer);
-    Load(neighbours.weights, i, 0.0f, &weight);
+    Load(neighbours.weight, i, 0.0f, &weight);
     const Lanes usual = width * (1.0f + (nearer > zero ? nearer : zero));
     const Lanes residual = (nearer - slope_x * x - slope_y * y) / usual;
     const Lanes w = weight / (1.0f + residual * residual);
@@ -70,13 +81,7 @@ EVO_HOT void SumSlopes(const Neighbours& neighbours, const Eigen::Vector2f& slop
 std::optional<Eigen::Vector2d> SurfaceSlope(const std::vector<DepthSample>& samples, const DepthSample& at) {
   if (!(at.inverse_depth > 0.0)) return std::nullopt;
   thread_local Neighbours neighbours;
-  neighbours.Clear();
-  for (const auto& sample : samples) {
-    const Eigen::Vector2d away = sample.position - at.position;
-    const double distance = away.squaredNorm() / (kReachPx * kReachPx);
-    if (distance >= 1.0 || distance == 0.0 || !(sample.inverse_depth > 0.0)) continue;
-    neighbours.Add(away, sample.inverse_depth / at.inverse_depth - 1.0, 1.0 - distance);
-  }
+  neighbours.Find(samples, at);
   constexpr double kPrior = kUsualError * kUsualError / (kUsualSlope * kUsualSlope);
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();
   SlopeSums s{};

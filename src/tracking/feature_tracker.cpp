@@ -11,6 +11,7 @@ namespace {
 constexpr int kCoarseIterations = 6;
 constexpr int kNewbornFrames = 5;      // until then a feature has to prove itself
 constexpr double kJoltPx = 0.2;        // motion by a jolt that is not left to the features' own alignment
+constexpr int kJoltPasses = 2;         // the first may be misled by features that took a neighbour for themselves
 constexpr int kYouth = 12;             // frames after which a feature is judged for its oddity
 constexpr double kSlowestPxS = 4.0;    // flow to which a change of shape is compared, at least
 constexpr double kSlowdown = 0.9;      // of a feature without events, from frame to frame
@@ -80,10 +81,7 @@ std::vector<ObservedWindow> FeatureTracker::Windows() const {
 
 void FeatureTracker::Track(const EventHistory& history, TimeNs t) {
   AlignAll(history, t, {});
-  if (options_.follow_jolts) {
-    const Jolt jolt = FindJolt(UnexpectedMotions());
-    if (jolt.motion_px > kJoltPx) AlignAll(history, t, jolt);
-  }
+  if (options_.follow_jolts) FollowJolt(history, t);
   const double step_s = ToSeconds(t - *last_);
   const std::vector<Eigen::Vector2d> filtered = FilteredPositions(step_s);
   std::vector<char> alive(features_.size());
@@ -103,6 +101,17 @@ void FeatureTracker::AlignAll(const EventHistory& history, TimeNs t, const Jolt&
   if (alignments_.size() < features_.size()) alignments_.resize(features_.size());
   pool_->ForEach(
       features_.size(), [&](std::size_t i) { Align(history, t, jolt, features_[i], &alignments_[i]); }, 4);
+}
+
+void FeatureTracker::FollowJolt(const EventHistory& history, TimeNs t) {
+  Jolt jolt;
+  for (int i = 0; i < kJoltPasses; ++i) {
+    const Jolt further = FindJolt(UnexpectedMotions());
+    if (further.motion_px <= kJoltPx) return;
+    jolt.turn += further.turn;
+    jolt.turn_rate += further.turn_rate;
+    AlignAll(history, t, jolt);
+  }
 }
 
 std::vector<Eigen::Vector2d> FeatureTracker::FilteredPositions(double step_s) {

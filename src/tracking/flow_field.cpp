@@ -11,53 +11,48 @@ namespace {
 
 constexpr int kCellPx = 24;
 constexpr double kNeighbourhoodPx = 40.0;  // features this near tell a cell its flow
-// Of the windows that only have to lead near the flow: a quarter of the cost.
+// Of the windows that only have to lead near the flow: a quarter of the cost, and near enough for an image of events.
 constexpr double kCoarseCellPx = 2.0;
 constexpr double kCoarselySettledPx = 0.1;
 constexpr double kSettledPx = 0.02;
 constexpr double kCautiousShare = 1.0;  // of a window's motion, while the flow comes from elsewhere
 
-bool GatherForFlow(const EventHistory& history, TimeNs t, double x, double y, const Eigen::Vector2d& flow,
-                   TimeNs half_window, const TrackerOptions& options, LocalEvents* events) {
-  history.Gather({t, x, y, flow.x(), flow.y(), static_cast<double>(options.flow_patch_radius_px), half_window}, events);
-  events->Thin(static_cast<std::size_t>(options.most_events));
-  return events->size() >= static_cast<std::size_t>(options.fewest_events);
-}
-
-FlowEstimator MakeEstimator(const TrackerOptions& options, double cell_px, double sigma_px, double settled_px) {
-  return {options.flow_patch_radius_px + 2,
+FlowEstimator MakeEstimator(int radius_px, double cell_px, double sigma_px, double settled_px,
+                            const TrackerOptions& options) {
+  return {radius_px + 2,
           options.use_polarity ? 2 : 1,
           {cell_px, sigma_px, options.outlier_share, options.iterations, settled_px}};
 }
 
-/// Comes near the flow and gathers the events of its window; false where there are too few.
+bool GatherForFlow(const EventHistory& history, TimeNs t, double x, double y, const Eigen::Vector2d& flow,
+                   int radius_px, TimeNs half_window, const TrackerOptions& options, LocalEvents* events) {
+  history.Gather({t, x, y, flow.x(), flow.y(), static_cast<double>(radius_px), half_window}, events);
+  events->Thin(static_cast<std::size_t>(options.most_events));
+  return events->size() >= static_cast<std::size_t>(options.fewest_events);
+}
+
+/// Comes near the flow, from `flow` or from nothing; false where there are too few events.
 bool EstimateCoarseFlow(const EventHistory& history, TimeNs t, double x, double y, const TrackerOptions& options,
-                        LocalEvents* events, Eigen::Vector2d* flow) {
+                        Eigen::Vector2d* flow) {
+  thread_local LocalEvents events;
   // A short window hardly moves the events even if the flow is unknown, but tells little of a slow flow; each window
   // twice as long starts from a flow known twice as well, until the events have moved far enough.
-  FlowEstimator coarse = MakeEstimator(options, kCoarseCellPx, options.flow_sigma_px, kCoarselySettledPx);
+  const int radius_px = options.flow_patch_radius_px;
+  const FlowEstimator coarse =
+      MakeEstimator(radius_px, kCoarseCellPx, options.flow_sigma_px, kCoarselySettledPx, options);
   const TimeNs longest = FromSeconds(0.5 * options.longest_window_s);
   TimeNs half_window = flow->isZero() ? FromSeconds(0.5 * options.shortest_window_s)
                                       : HalfWindow(*flow, kCautiousShare * options.window_motion_px, options);
+  bool found = false;
   for (bool settled = false; !settled; half_window *= 2) {
     half_window = std::min(half_window, longest);
     settled = half_window == longest;
-    if (!GatherForFlow(history, t, x, y, *flow, half_window, options, events)) continue;
-    if (!(coarse.Refine(*events, ToSeconds(half_window), flow) > 0.0)) return false;
+    if (!GatherForFlow(history, t, x, y, *flow, radius_px, half_window, options, &events)) continue;
+    if (!(coarse.Refine(events, ToSeconds(half_window), flow) > 0.0)) return false;
+    found = true;
     settled = settled || flow->norm() * 2.0 * ToSeconds(half_window) >= options.window_motion_px;
   }
-  half_window = HalfWindow(*flow, options.window_motion_px, options);
-  return GatherForFlow(history, t, x, y, *flow, half_window, options, events);
-}
-
-/// The flow to within some steps that move the events at the window's ends by `settled_px`.
-bool EstimateFlowTo(double settled_px, const EventHistory& history, TimeNs t, double x, double y,
-                    const TrackerOptions& options, Eigen::Vector2d* flow) {
-  thread_local LocalEvents events;
-  if (!EstimateCoarseFlow(history, t, x, y, options, &events, flow)) return false;
-  FlowEstimator fine = MakeEstimator(options, 1.0, options.fine_sigma_px, settled_px);
-  const TimeNs half_window = HalfWindow(*flow, options.window_motion_px, options);
-  return fine.Refine(events, ToSeconds(half_window), flow) > 0.0;
+  return found;
 }
 
 }  // namespace
@@ -69,7 +64,13 @@ TimeNs HalfWindow(const Eigen::Vector2d& flow, double motion_px, const TrackerOp
 
 bool EstimateFlow(const EventHistory& history, TimeNs t, double x, double y, const TrackerOptions& options,
                   Eigen::Vector2d* flow) {
-  return EstimateFlowTo(kSettledPx, history, t, x, y, options, flow);
+  if (!EstimateCoarseFlow(history, t, x, y, options, flow)) return false;
+  // A feature's own patch, as what is around it may be of another depth.
+  thread_local LocalEvents events;
+  const FlowEstimator fine = MakeEstimator(options.patch_radius_px, 1.0, options.fine_sigma_px, kSettledPx, options);
+  const TimeNs half_window = HalfWindow(*flow, options.window_motion_px, options);
+  return GatherForFlow(history, t, x, y, *flow, options.patch_radius_px, half_window, options, &events) &&
+         fine.Refine(events, ToSeconds(half_window), flow) > 0.0;
 }
 
 FlowField::FlowField(int width, int height, const TrackerOptions& options)
@@ -103,8 +104,7 @@ FlowField::Cell FlowField::Estimate(const EventHistory& history, TimeNs t, const
                                     const Cell& start) const {
   Cell cell = start;
   if (!start.known) cell.flow.setZero();
-  // Near is good enough for the image of events, and new features refine their flow themselves.
-  cell.known = EstimateFlowTo(kCoarselySettledPx, history, t, centre.x(), centre.y(), options_, &cell.flow);
+  cell.known = EstimateCoarseFlow(history, t, centre.x(), centre.y(), options_, &cell.flow);
   if (!cell.known) cell.flow.setZero();
   return cell;
 }

@@ -38,7 +38,7 @@ void Register(Parameters& parameters, TrackerOptions& o) {
                  "share of the newest window in a template, less where windows overlap");
   parameters.Add("tracker.ego_motion", &o.ego_motion, "predict patches by the camera's own motion");
   parameters.Add("tracker.follow_jolts", &o.follow_jolts,
-                 "where all turn unexpectedly, align them once more, expecting that");
+                 "where all turn unexpectedly, align them again, expecting that");
   parameters.Add("tracker.restore_shake", &o.restore_shake,
                  "give back what windows smooth away when the camera shakes");
   parameters.Add("tracker.epipolar_filter", &o.epipolar_filter,

@@ -75,8 +75,8 @@ TEST(EstimateFlow, FindsSlowAndFastFlowsFromNothing) {
     history.Append(scene.Events([&](double t) { return Vector2d(truth * (t - 0.1)); }, 0.2, 1000.0));
     int good = 0;
     int estimated = 0;
-    for (int x = 25; x < scene.width - 20; x += 17) {
-      for (int y = 25; y < scene.height - 20; y += 17) {
+    for (int x = 25; x < scene.width - 20; x += 8) {
+      for (int y = 25; y < scene.height - 20; y += 8) {
         Vector2d flow = Vector2d::Zero();
         if (!EstimateFlow(history, 100'000'000, x, y, options, &flow)) continue;
         ++estimated;

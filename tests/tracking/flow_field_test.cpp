@@ -31,7 +31,7 @@ TEST(FlowField, StartsFromTheGuessWhereNoFeatureIs) {
     field.Update(history, 50'000'000, {}, guess, &pool);
     return ShareRight(field, scene.width, scene.height, velocity);
   };
-  EXPECT_LT(share([](const Vector2d&) { return std::nullopt; }), 0.5);
+  EXPECT_LT(share([](const Vector2d&) { return std::nullopt; }), 0.7);
   EXPECT_GT(share([&](const Vector2d&) { return Vector2d(0.8 * velocity); }), 0.9);
 }
 

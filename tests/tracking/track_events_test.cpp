@@ -109,7 +109,7 @@ TEST(TrackEvents, FeaturesOutliveAStop) {
     return Vector2d(kFast * (t - ramp(t - 0.3) + ramp(t - 0.9)), 0.0);
   };
   std::vector<Vector2d> errors;
-  for (const unsigned seed : {4, 5, 6}) {
+  for (unsigned seed = 4; seed < 12; ++seed) {
     const EventColumns all = CrossScene(60, seed).Events(moved, 1.2, 1000.0);
     EventColumns events;
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -124,7 +124,7 @@ TEST(TrackEvents, FeaturesOutliveAStop) {
       for (std::size_t i = 1; i < track.size(); ++i) EXPECT_EQ(track[i].t - track[i - 1].t, FromSeconds(0.02));
     }
   }
-  ASSERT_GE(errors.size(), 15u);
+  ASSERT_GE(errors.size(), 40u);
   EXPECT_LT(MedianNorm(errors), 0.2);
 }
 
@@ -158,7 +158,7 @@ constexpr double kAnyBend = 1000.0;
 TEST(TrackEvents, FeaturesFollowAJolt) {
   const std::vector<Vector2d> errors = ErrorsOverABump(true, kAnyBend);
   EXPECT_GE(errors.size(), 100u);
-  EXPECT_LE(AstrayShare(errors), 0.04);
+  EXPECT_LE(AstrayShare(errors), 0.02);
   // They take a neighbour for themselves.
   EXPECT_GE(AstrayShare(ErrorsOverABump(false, kAnyBend)), 0.5);
 }

@@ -89,6 +89,8 @@ class FeatureTracker : public Tracker {
   void Align(const EventHistory& history, TimeNs t, const Jolt& jolt, const TrackedFeature& feature,
              FeatureAlignment* alignment) const;
   void AlignAll(const EventHistory& history, TimeNs t, const Jolt& jolt);
+  /// Where all features turned unexpectedly, aligns them again, expecting that.
+  void FollowJolt(const EventHistory& history, TimeNs t);
   /// Where all features are reported, after the alignment and before they advance.
   std::vector<Eigen::Vector2d> FilteredPositions(double step_s);
   std::vector<UnexpectedMotion> UnexpectedMotions() const;

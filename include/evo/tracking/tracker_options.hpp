@@ -45,7 +45,7 @@ struct TrackerOptions {
   double affine_prior = 20.0;    ///< weight, in events, of the predicted affine shape
   double template_gain = 0.1;    ///< share of a window in a template that has settled; less if it overlaps the last
   bool ego_motion = true;        ///< let the camera's own motion predict how patches move, grow and bend
-  bool follow_jolts = true;      ///< where all turn unexpectedly, align them once more, expecting that
+  bool follow_jolts = true;      ///< where all turn unexpectedly, align them again, expecting that
   bool restore_shake = true;     ///< give back to the positions what windows smooth away while the camera shakes
   bool epipolar_filter = true;   ///< take from the positions what they err by across their epipolar lines
   bool use_polarity = true;      ///< associate events only with template events of their own sign
