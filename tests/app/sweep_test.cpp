@@ -67,7 +67,7 @@ class SweepTest : public EvoRunTest {
 };
 
 TEST_F(SweepTest, OneCorruptSequenceOfSixFailsAndTheOthersGoOn) {
-  const std::string six = "-j2 TO=0.6 OPTIONS=--no-plots OUT=out FOLDERS='s1 s2 s3 s4 s5 s6'";
+  const std::string six = "-j2 TO=0.8 OPTIONS=--no-plots OUT=out FOLDERS='s1 s2 s3 s4 s5 s6'";
   for (const char* name : {"s1", "s2", "s3", "s4", "s5", "s6"}) AddRecording(name);
   fs::resize_file(folder / "s4" / "street_data.hdf5", 1'000'000);
 
