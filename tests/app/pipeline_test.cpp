@@ -247,7 +247,7 @@ TEST_F(PipelineTest, AForcedRunLeavesNothingOfTheOneBefore) {
   const std::string words = "run -q --to 0.8 --force " + To("result") + " ";
   ASSERT_EQ(Run(words + "--events " + Quote(Sample()) + " --align origin,sim3,se3:10"), 0) << err;
   const fs::path result = folder / "result";
-  for (const char* name : {"errors_se3-10.csv", "plots/errors_distance_sim3.gp", "images/frame_0000.260s.png"}) {
+  for (const char* name : {"errors_se3-10.csv", "plots/errors_distance_sim3.gp", "images/frame_0000.360s.png"}) {
     EXPECT_TRUE(fs::exists(result / name)) << name;
   }
   for (const char* name : {"errors_mine.csv", "errors_sim3.txt", "plots/errors_mine.svg", "tables/mine.tex"}) {
