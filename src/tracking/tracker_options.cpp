@@ -11,7 +11,7 @@ void Register(Parameters& parameters, TrackerOptions& o) {
   parameters.Add("tracker.frames_between_refills", &o.frames_between_refills, 1, 1000,
                  "at least, from key frame to key frame; half as many where most features are missing");
   parameters.Add("tracker.flow_patch_radius_px", &o.flow_patch_radius_px, 5, 40,
-                 "half the side of the patch that tells a first flow (px)");
+                 "half the side of the patch that leads near a first flow (px)");
   parameters.Add("tracker.patch_radius_px", &o.patch_radius_px, 5, 40, "half the side of a feature's patch (px)");
   parameters.Add("tracker.window_motion_px", &o.window_motion_px, 0.5, 20.0, "motion within a feature's window (px)");
   parameters.Add("tracker.window_bend_px", &o.window_bend_px, 0.001, 1000.0,

@@ -55,8 +55,9 @@ class FlowField {
 /// Half the window in which `flow` moves a feature by `motion_px`, within the options' limits.
 TimeNs HalfWindow(const Eigen::Vector2d& flow, double motion_px, const TrackerOptions& options);
 
-/// Flow of the events around (x, y) at `t`, when nothing is known before: windows of growing length, each started from
-/// the flow of the one before. Returns false where there are too few events for a flow.
+/// Flow of the events around (x, y) at `t`, from `flow` or, if that is zero, from nothing: windows of growing length,
+/// each started from the flow of the one before, the last over a feature's own patch. Returns false where there are too
+/// few events for a flow.
 bool EstimateFlow(const EventHistory& history, TimeNs t, double x, double y, const TrackerOptions& options,
                   Eigen::Vector2d* flow);
 

@@ -22,7 +22,7 @@ struct TrackerOptions {
   int features = 150;              ///< live features to aim at
   double refill_below = 0.97;      ///< detect new ones when fewer than this share is alive: a key frame
   int frames_between_refills = 5;  ///< at least; half as many where most are missing
-  int flow_patch_radius_px = 15;   ///< half the side of the patch that tells a first flow: 31 x 31 px
+  int flow_patch_radius_px = 15;   ///< half the side of the patch that leads near a first flow: 31 x 31 px
   int patch_radius_px = 8;         ///< half the side of a feature's patch: 17 x 17 px; larger ones span more depths
 
   // The window of events around an event frame's stamp, chosen per feature.
