@@ -3,13 +3,13 @@
 
 #include <algorithm>
 
-#include "evo/tracking/corner_detector.hpp"
-#include "evo/tracking/em_affine.hpp"
-#include "evo/tracking/em_flow.hpp"
-#include "evo/tracking/flow_field.hpp"
+#include "tracking/detection/corner_detector.hpp"
+#include "tracking/detection/flow_field.hpp"
+#include "tracking/patch/em_affine.hpp"
+#include "tracking/patch/em_flow.hpp"
 #include "tracking/synthetic_events.hpp"
 
-namespace evo {
+namespace evo::tracking {
 namespace {
 
 constexpr TimeNs kStamp = 100'000'000;
@@ -23,14 +23,14 @@ const testing::CrossScene& Scene() {
   return scene;
 }
 
-const EventColumns& SceneEvents() {
-  static const EventColumns events =
+const events::EventColumns& SceneEvents() {
+  static const events::EventColumns events =
       Scene().Events([](double t) { return Eigen::Vector2d(kFlow * (t - ToSeconds(kStamp))); }, 0.2, 500.0);
   return events;
 }
 
-EventHistory MakeHistory() {
-  EventHistory history(Scene().width, Scene().height);
+events::EventHistory MakeHistory() {
+  events::EventHistory history(Scene().width, Scene().height);
   history.Append(SceneEvents());
   return history;
 }
@@ -41,14 +41,14 @@ const Eigen::Vector2d& Centre() {
   return *std::ranges::min_element(Scene().centres, {}, [&](const auto& centre) { return (centre - middle).norm(); });
 }
 
-LocalEvents GatherPatch(double radius) {
-  LocalEvents events;
+events::LocalEvents GatherPatch(double radius) {
+  events::LocalEvents events;
   MakeHistory().Gather({kStamp, Centre().x(), Centre().y(), kFlow.x(), kFlow.y(), radius, kHalfWindow}, &events);
   events.Thin(static_cast<std::size_t>(TrackerOptions().most_events));
   return events;
 }
 
-DensityMap MakeTemplate(const LocalEvents& events, int radius) {
+DensityMap MakeTemplate(const events::LocalEvents& events, int radius) {
   DensityMap map(radius, 2);
   const Eigen::Vector2f v = kFlow.cast<float>();
   for (std::size_t i = 0; i < events.size(); ++i) {
@@ -63,7 +63,7 @@ void CountEvents(benchmark::State& state, std::size_t events) {
 }
 
 void Append(benchmark::State& state) {
-  EventHistory history(Scene().width, Scene().height);
+  events::EventHistory history(Scene().width, Scene().height);
   for (auto _ : state) {
     history.Append(SceneEvents());
     history.DropBefore(SceneEvents().t.back() + 1);
@@ -73,8 +73,8 @@ void Append(benchmark::State& state) {
 BENCHMARK(Append);
 
 void Gather(benchmark::State& state) {
-  const EventHistory history = MakeHistory();
-  LocalEvents events;
+  const events::EventHistory history = MakeHistory();
+  events::LocalEvents events;
   for (auto _ : state) {
     history.Gather({kStamp, Centre().x(), Centre().y(), kFlow.x(), kFlow.y(), kPatchRadius, kHalfWindow}, &events);
     benchmark::DoNotOptimize(events.x.data());
@@ -106,7 +106,7 @@ void OwnMoments(benchmark::State& state) {
 BENCHMARK(OwnMoments);
 
 void Align(benchmark::State& state) {
-  const LocalEvents events = GatherPatch(kPatchRadius);
+  const events::LocalEvents events = GatherPatch(kPatchRadius);
   const DensityMap map = MakeTemplate(events, 12);
   AssociationField field;
   field.Build(map, 1.0, 0.2);
@@ -124,7 +124,7 @@ BENCHMARK(Align);
 
 /// Argument: size of the cells in px.
 void RefineFlow(benchmark::State& state) {
-  const LocalEvents events = GatherPatch(15.0);
+  const events::LocalEvents events = GatherPatch(15.0);
   FlowEstimator estimator(17, 2, {static_cast<double>(state.range(0)), 1.5, 0.2});
   for (auto _ : state) {
     Eigen::Vector2d flow = 0.7 * kFlow;
@@ -136,7 +136,7 @@ void RefineFlow(benchmark::State& state) {
 BENCHMARK(RefineFlow)->ArgName("cell_px")->Arg(1)->Arg(2);
 
 void EstimateFlowFromNothing(benchmark::State& state) {
-  const EventHistory history = MakeHistory();
+  const events::EventHistory history = MakeHistory();
   const TrackerOptions options;
   for (auto _ : state) {
     Eigen::Vector2d flow = Eigen::Vector2d::Zero();
@@ -147,7 +147,7 @@ void EstimateFlowFromNothing(benchmark::State& state) {
 BENCHMARK(EstimateFlowFromNothing);
 
 void EventImage(benchmark::State& state) {
-  const EventHistory history = MakeHistory();
+  const events::EventHistory history = MakeHistory();
   const TrackerOptions options;
   FlowField field(Scene().width, Scene().height, options);
   ThreadPool pool(1);
@@ -162,7 +162,7 @@ void EventImage(benchmark::State& state) {
 BENCHMARK(EventImage);
 
 void DetectCornersInImage(benchmark::State& state) {
-  const EventHistory history = MakeHistory();
+  const events::EventHistory history = MakeHistory();
   const TrackerOptions options;
   FlowField field(Scene().width, Scene().height, options);
   ThreadPool pool(1);
@@ -175,4 +175,4 @@ void DetectCornersInImage(benchmark::State& state) {
 BENCHMARK(DetectCornersInImage);
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::tracking

@@ -19,10 +19,10 @@ struct Config {
   Config(const Config&) = delete;  // the parameters refer to the fields
   Config& operator=(const Config&) = delete;
 
-  TrackerOptions tracker;
-  OdometryOptions odometry;
-  EvaluationOptions evaluation;
-  TrackTruthOptions track_truth;
+  tracking::TrackerOptions tracker;
+  odometry::OdometryOptions odometry;
+  evaluation::EvaluationOptions evaluation;
+  evaluation::TrackTruthOptions track_truth;
   Parameters parameters;
 };
 

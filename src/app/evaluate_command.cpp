@@ -72,8 +72,9 @@ std::optional<TimeNs> ParseStamp(const std::string& option, const std::string& t
   return stamp;
 }
 
-EvaluationInterval ParseInterval(const EvaluateArguments& arguments) {
-  const EvaluationInterval interval{ParseStamp("--from-stamp", arguments.from), ParseStamp("--to-stamp", arguments.to)};
+evaluation::EvaluationInterval ParseInterval(const EvaluateArguments& arguments) {
+  const evaluation::EvaluationInterval interval{ParseStamp("--from-stamp", arguments.from),
+                                                ParseStamp("--to-stamp", arguments.to)};
   if (interval.from && interval.to && *interval.from >= *interval.to) {
     throw Error(ErrorKind::kUsage, "--from-stamp must come before --to-stamp");
   }
@@ -101,7 +102,7 @@ void SetSeconds(const std::string& name, std::optional<double> given, double low
 }
 
 /// The options that were given win over the configuration.
-void Override(const EvaluateArguments& arguments, EvaluationOptions* options) {
+void Override(const EvaluateArguments& arguments, evaluation::EvaluationOptions* options) {
   const auto set = [](const auto& given, auto* option) {
     if (!given.empty()) *option = given;
   };
@@ -119,25 +120,25 @@ void Override(const EvaluateArguments& arguments, EvaluationOptions* options) {
                 "--max-difference: the association interpolate, which is the default, compares no stamps; choose "
                 "--association nearest, unique or nearest-truth");
   }
-  ParseDeltas(options->rpe.deltas);  // refuses a wrong --rpe before anything is read
+  evaluation::ParseDeltas(options->rpe.deltas);  // refuses a wrong --rpe before anything is read
 }
 
 struct Inputs {
-  Trajectory estimate;
-  Trajectory truth;
+  geometry::Trajectory estimate;
+  geometry::Trajectory truth;
 };
 
 /// Two files without stamps are compared pose by pose; a file with stamps and one without have nothing in common.
-Inputs ReadInputs(const EvaluateArguments& arguments, AssociationOptions* association) {
-  const bool estimate_is_kitti = DetectKind(arguments.estimate) == FileKind::kKittiPoses;
-  const bool truth_is_kitti = DetectKind(arguments.ground_truth) == FileKind::kKittiPoses;
+Inputs ReadInputs(const EvaluateArguments& arguments, evaluation::AssociationOptions* association) {
+  const bool estimate_is_kitti = io::DetectKind(arguments.estimate) == io::FileKind::kKittiPoses;
+  const bool truth_is_kitti = io::DetectKind(arguments.ground_truth) == io::FileKind::kKittiPoses;
   if (estimate_is_kitti != truth_is_kitti) {
     throw Error(ErrorKind::kInput, (estimate_is_kitti ? arguments.estimate : arguments.ground_truth) +
                                        ": its poses have no stamps, those of the other file have; give two files with "
                                        "stamps or two without");
   }
   if (!estimate_is_kitti) {
-    return {ReadTum(arguments.estimate), ReadGroundTruth(arguments.ground_truth, arguments.common.Source())};
+    return {io::ReadTum(arguments.estimate), io::ReadGroundTruth(arguments.ground_truth, arguments.common.Source())};
   }
   if (!arguments.association.empty() || arguments.max_difference_s || arguments.time_offset_s) {
     throw Error(ErrorKind::kUsage, arguments.estimate +
@@ -146,22 +147,24 @@ Inputs ReadInputs(const EvaluateArguments& arguments, AssociationOptions* associ
   }
   *association = {};
   association->association = "index";
-  return {ReadKitti(arguments.estimate), ReadKitti(arguments.ground_truth)};
+  return {io::ReadKitti(arguments.estimate), io::ReadKitti(arguments.ground_truth)};
 }
 
-Evaluation EvaluateTrajectory(const EvaluateArguments& arguments, const std::vector<Alignment>& alignments,
-                              const EvaluationInterval& interval, const Config& config, RunRecord* record) {
+evaluation::Evaluation EvaluateTrajectory(const EvaluateArguments& arguments,
+                                          const std::vector<evaluation::Alignment>& alignments,
+                                          const evaluation::EvaluationInterval& interval, const Config& config,
+                                          RunRecord* record) {
   record->AddInput("estimate", arguments.estimate);
-  EvaluationOptions options = config.evaluation;
+  evaluation::EvaluationOptions options = config.evaluation;
   const auto [estimate, truth] = record->Time("read", [&] { return ReadInputs(arguments, &options.association); });
-  std::vector<StampedCovariance> covariances;
+  std::vector<geometry::StampedCovariance> covariances;
   if (!arguments.covariances.empty()) {
     record->AddInput("covariances", arguments.covariances);
-    covariances = ReadPoseCovariances(arguments.covariances);
+    covariances = io::ReadPoseCovariances(arguments.covariances);
   }
   auto evaluation = record->Time("evaluate", [&] {
     return NamingPlace(arguments.estimate + " against " + arguments.ground_truth, [&, &e = estimate, &t = truth] {
-      return Evaluate(t, e, alignments, interval, options, covariances);
+      return evaluation::Evaluate(t, e, alignments, interval, options, covariances);
     });
   });
   record->AddCount("estimated_poses", estimate.size());
@@ -170,7 +173,7 @@ Evaluation EvaluateTrajectory(const EvaluateArguments& arguments, const std::vec
   return evaluation;
 }
 
-void WriteResults(const EvaluateArguments& arguments, const std::optional<Evaluation>& trajectory,
+void WriteResults(const EvaluateArguments& arguments, const std::optional<evaluation::Evaluation>& trajectory,
                   const std::optional<TrackEvaluation>& tracks) {
   const bool with_plots = !arguments.no_plots;
   std::string sequence = arguments.sequence;
@@ -188,7 +191,7 @@ void RunEvaluate(const EvaluateArguments& arguments, const std::vector<std::stri
   Config config;
   arguments.common.Apply(&config.parameters);
   Override(arguments, &config.evaluation);
-  const auto alignments = ParseAlignments(arguments.align);
+  const auto alignments = evaluation::ParseAlignments(arguments.align);
   const auto interval = ParseInterval(arguments);
   const bool with_trajectory = !arguments.estimate.empty();
   const bool with_tracks = !arguments.tracks.tracks.empty();
@@ -200,7 +203,7 @@ void RunEvaluate(const EvaluateArguments& arguments, const std::vector<std::stri
   const InterruptGuard guard(arguments.out);
   RunRecord record(command_line, config.parameters);
   if (!arguments.ground_truth.empty()) record.AddInput("ground_truth", arguments.ground_truth);
-  std::optional<Evaluation> trajectory;
+  std::optional<evaluation::Evaluation> trajectory;
   std::optional<TrackEvaluation> tracks;
   if (with_trajectory) trajectory = EvaluateTrajectory(arguments, alignments, interval, config, &record);
   if (with_tracks) {
@@ -209,8 +212,8 @@ void RunEvaluate(const EvaluateArguments& arguments, const std::vector<std::stri
   }
   // Only now, so that a fault of the one does not leave the other's results alone.
   record.Time("write", [&] { WriteResults(arguments, trajectory, tracks); });
-  WriteManifest(std::filesystem::path(arguments.out) / "manifest.json", record.manifest);
-  if (trajectory) std::cout << FormatSummary(*trajectory);
+  report::WriteManifest(std::filesystem::path(arguments.out) / "manifest.json", record.manifest);
+  if (trajectory) std::cout << report::FormatSummary(*trajectory);
   if (tracks) std::cout << FormatTrackEvaluation(*tracks);
 }
 

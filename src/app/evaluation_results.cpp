@@ -17,44 +17,48 @@ namespace evo::app {
 namespace {
 
 /// What tells the files of an alignment apart: nothing for the first one.
-std::string Suffix(std::size_t index, const Alignment& alignment) {
+std::string Suffix(std::size_t index, const evaluation::Alignment& alignment) {
   if (index == 0) return "";
   std::string suffix = "_" + alignment.name;
   std::ranges::replace(suffix, ':', '-');
   return suffix;
 }
 
-void SayWhatIsMissing(const Evaluation& evaluation) {
+void SayWhatIsMissing(const evaluation::Evaluation& evaluation) {
   for (const auto& reason : evaluation.left_out) spdlog::warn("left out of the report: {}", reason);
   if (evaluation.alignments.empty()) return;
   for (const auto& rpe : evaluation.alignments.front().rpe) {
     if (rpe.relations.front().statistics.count > 0) continue;
     spdlog::debug("no relative errors over {} ({} pairs): {}", rpe.delta.name, rpe.pairs,
-                  evaluation.has_stamps || rpe.delta.unit != DeltaUnit::kSeconds
+                  evaluation.has_stamps || rpe.delta.unit != evaluation::DeltaUnit::kSeconds
                       ? "the way is too short, or the tolerance too small"
                       : "the files have no stamps");
   }
 }
 
-void DrawFigures(const std::filesystem::path& folder, const std::string& suffix, const Evaluation& evaluation,
-                 const AlignedEvaluation& result, const Restarts& known_restarts) {
+void DrawFigures(const std::filesystem::path& folder, const std::string& suffix,
+                 const evaluation::Evaluation& evaluation, const evaluation::AlignedEvaluation& result,
+                 const Restarts& known_restarts) {
   const auto restarts = known_restarts.value_or(std::vector<TimeNs>());
-  Gnuplot gnuplot(folder);
+  report::Gnuplot gnuplot(folder);
   const auto draw = [&](const std::string& name, const auto& figure) {
     gnuplot.Draw(name + suffix, figure(name + suffix));
   };
-  draw("trajectory", [&](const std::string& name) { return TrajectoryFigure(name, evaluation, result); });
-  draw("axes", [&](const std::string& name) { return AxesFigure(name, evaluation, result, restarts); });
-  draw("errors",
-       [&](const std::string& name) { return ErrorFigure(name, evaluation, result, ErrorAxis::kTime, restarts); });
-  draw("errors_distance",
-       [&](const std::string& name) { return ErrorFigure(name, evaluation, result, ErrorAxis::kDistance, restarts); });
-  draw("scale_drift", [&](const std::string& name) { return ScaleDriftFigure(name, evaluation, result, restarts); });
+  draw("trajectory", [&](const std::string& name) { return report::TrajectoryFigure(name, evaluation, result); });
+  draw("axes", [&](const std::string& name) { return report::AxesFigure(name, evaluation, result, restarts); });
+  draw("errors", [&](const std::string& name) {
+    return report::ErrorFigure(name, evaluation, result, report::ErrorAxis::kTime, restarts);
+  });
+  draw("errors_distance", [&](const std::string& name) {
+    return report::ErrorFigure(name, evaluation, result, report::ErrorAxis::kDistance, restarts);
+  });
+  draw("scale_drift",
+       [&](const std::string& name) { return report::ScaleDriftFigure(name, evaluation, result, restarts); });
 }
 
 }  // namespace
 
-std::vector<std::string> EvaluationResultNames(std::span<const Alignment> alignments) {
+std::vector<std::string> EvaluationResultNames(std::span<const evaluation::Alignment> alignments) {
   std::vector<std::string> names{"summary.csv", "summary.json", "metrics.csv", "tables/errors.tex"};
   for (std::size_t i = 0; i < alignments.size(); ++i) names.push_back("errors" + Suffix(i, alignments[i]) + ".csv");
   return names;
@@ -68,19 +72,19 @@ void RemoveEvaluationResults(const std::filesystem::path& folder) {
 }
 
 void WriteEvaluationResults(const std::filesystem::path& folder, const std::string& sequence,
-                            const Evaluation& evaluation, bool with_plots, const Restarts& restarts) {
+                            const evaluation::Evaluation& evaluation, bool with_plots, const Restarts& restarts) {
   SayWhatIsMissing(evaluation);
   if (evaluation.alignments.empty()) return;
   const auto rebootstraps = restarts ? std::optional(static_cast<std::int64_t>(restarts->size())) : std::nullopt;
-  const auto rows = SummaryRows(sequence, evaluation, rebootstraps);
-  WriteCsv(folder / "summary.csv", rows);
-  WriteJson(folder / "summary.json", rows);
-  WriteCsv(folder / "metrics.csv", MetricRows(sequence, evaluation), Digits::kAll);
-  WriteText(folder / "tables" / "errors.tex", ErrorTable(sequence, evaluation));
+  const auto rows = report::SummaryRows(sequence, evaluation, rebootstraps);
+  report::WriteCsv(folder / "summary.csv", rows);
+  report::WriteJson(folder / "summary.json", rows);
+  report::WriteCsv(folder / "metrics.csv", report::MetricRows(sequence, evaluation), report::Digits::kAll);
+  WriteText(folder / "tables" / "errors.tex", report::ErrorTable(sequence, evaluation));
   for (std::size_t i = 0; i < evaluation.alignments.size(); ++i) {
     const auto& result = evaluation.alignments[i];
     const std::string suffix = Suffix(i, result.alignment);
-    WriteErrors(folder / ("errors" + suffix + ".csv"), result.errors, evaluation.has_stamps);
+    report::WriteErrors(folder / ("errors" + suffix + ".csv"), result.errors, evaluation.has_stamps);
     if (with_plots) DrawFigures(folder / "plots", suffix, evaluation, result, restarts);
   }
 }

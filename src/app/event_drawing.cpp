@@ -19,39 +19,40 @@ constexpr int kColumns = 2;
 constexpr int kGap = 2 * kZoom;          // px between the frames of a sheet
 constexpr int kLabelHeight = 8 * kZoom;  // px
 
-Canvas DrawFrame(const TrackingView& view) {
-  EventColumns events;
+report::Canvas DrawFrame(const tracking::TrackingView& view) {
+  events::EventColumns events;
   view.history.ForEachBetween(
       view.t - kDrawnEvents / 2, view.t + kDrawnEvents / 2, [&](int x, int y, TimeNs t, std::int8_t polarity) {
         events.push_back(t, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), polarity);
       });
-  Canvas canvas = DrawEvents(events, view.history.width(), view.history.height(), PolarityColors::kRedBlue, kZoom);
-  TrackDrawing drawing;
+  report::Canvas canvas =
+      report::DrawEvents(events, view.history.width(), view.history.height(), report::PolarityColors::kRedBlue, kZoom);
+  report::TrackDrawing drawing;
   drawing.zoom = kZoom;
   drawing.alive = 0;
-  DrawTracks(&canvas, view.tracks, view.t, drawing);
+  report::DrawTracks(&canvas, view.tracks, view.t, drawing);
   return canvas;
 }
 
 }  // namespace
 
-void EventDrawing::Observe(const TrackingView& view) {
+void EventDrawing::Observe(const tracking::TrackingView& view) {
   if (frames_.empty()) {
     if (!next_ || view.t < *next_) return;
     next_ = schedule_.every ? std::optional(std::max(*next_ + *schedule_.every, view.t)) : std::nullopt;
   }
   frames_.push_back(DrawFrame(view));
   stamps_.push_back(view.t);
-  WritePng(folder_ / ("frame_" + Format("%08.3f", ToSeconds(view.t - start_)) + "s.png"), frames_.back());
+  report::WritePng(folder_ / ("frame_" + Format("%08.3f", ToSeconds(view.t - start_)) + "s.png"), frames_.back());
   if (frames_.size() == kFrames) WriteSheet();
 }
 
 void EventDrawing::WriteSheet() {
   for (std::size_t i = 0; i < kFrames; ++i) {
-    DrawLabel(&frames_[i], 0, 0, Format("t = %.3f s", ToSeconds(stamps_[i] - start_)), kLabelHeight);
+    report::DrawLabel(&frames_[i], 0, 0, Format("t = %.3f s", ToSeconds(stamps_[i] - start_)), kLabelHeight);
   }
-  WritePng(folder_ / ("four_frames_" + Format("%08.3f", ToSeconds(stamps_.front() - start_)) + "s.png"),
-           Sheet(frames_, kColumns, kGap));
+  report::WritePng(folder_ / ("four_frames_" + Format("%08.3f", ToSeconds(stamps_.front() - start_)) + "s.png"),
+                   report::Sheet(frames_, kColumns, kGap));
   frames_.clear();
   stamps_.clear();
 }

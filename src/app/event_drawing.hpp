@@ -26,7 +26,7 @@ class EventDrawing {
       : folder_(std::move(folder)), start_(start), schedule_(schedule), next_(schedule.first) {}
 
   /// To be called with every event frame in turn. Throws Error (kOutput).
-  void Observe(const TrackingView& view);
+  void Observe(const tracking::TrackingView& view);
 
  private:
   void WriteSheet();
@@ -34,8 +34,8 @@ class EventDrawing {
   std::filesystem::path folder_;
   TimeNs start_;
   DrawingSchedule schedule_;
-  std::optional<TimeNs> next_;  ///< when the next drawing is due; empty once all are done
-  std::vector<Canvas> frames_;  ///< of the drawing under way
+  std::optional<TimeNs> next_;          ///< when the next drawing is due; empty once all are done
+  std::vector<report::Canvas> frames_;  ///< of the drawing under way
   std::vector<TimeNs> stamps_;
 };
 

@@ -11,7 +11,7 @@ namespace evo::app {
 namespace {
 
 void RunInfo(const std::string& path) {
-  const Description description = Describe(path);
+  const io::Description description = io::Describe(path);
   std::size_t width = 0;
   for (const auto& [name, value] : description.values) width = std::max(width, name.size());
   std::cout << path << ": " << description.kind << '\n';

@@ -3,6 +3,7 @@
 
 #include "app/commands.hpp"
 #include "app/stages.hpp"
+#include "evo/io/track_io.hpp"
 
 namespace evo::app {
 
@@ -18,12 +19,12 @@ struct OdometryArguments {
 
 void RunOdometryCommand(const OdometryArguments& arguments, const std::vector<std::string>& command_line) {
   StageContext context(arguments.common, arguments.stage, OdometryResultNames(), command_line);
-  const Camera camera = OpenCamera(arguments.calibration, arguments.sensor);
-  const Tracks tracks = context.record.Time("read", [&] { return ReadTracks(arguments.tracks); });
+  const geometry::Camera camera = OpenCamera(arguments.calibration, arguments.sensor);
+  const events::Tracks tracks = context.record.Time("read", [&] { return io::ReadTracks(arguments.tracks); });
   context.record.AddInput("tracks", arguments.tracks);
   context.record.AddInput("calibration", arguments.calibration);
   if (context.force) RemoveOdometryResults(context.options.out);
-  const OdometryResult result = RunOdometryStage(&context, tracks, arguments.tracks, camera);
+  const odometry::OdometryResult result = RunOdometryStage(&context, tracks, arguments.tracks, camera);
   context.Finish();
   std::cout << FormatOdometry(result);
 }

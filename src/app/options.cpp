@@ -11,8 +11,8 @@ void CommonOptions::Apply(Parameters* parameters) const {
   for (const auto& setting : settings) parameters->Set(setting);
 }
 
-GroundTruthSource CommonOptions::Source() const {
-  return ground_truth_source == "loam" ? GroundTruthSource::kLoam : GroundTruthSource::kCartographer;
+io::GroundTruthSource CommonOptions::Source() const {
+  return ground_truth_source == "loam" ? io::GroundTruthSource::kLoam : io::GroundTruthSource::kCartographer;
 }
 
 CLI::Validator NumberBetween(double lowest, double highest) {

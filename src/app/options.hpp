@@ -22,7 +22,7 @@ struct CommonOptions {
 
   /// Starts the log and reads the configuration: defaults, then the file, then the settings.
   void Apply(Parameters* parameters) const;
-  GroundTruthSource Source() const;
+  io::GroundTruthSource Source() const;
 };
 
 /// A number in [lowest, highest]; NaN never is.

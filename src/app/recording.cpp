@@ -2,6 +2,7 @@
 
 #include <charconv>
 
+#include "evo/io/open_events.hpp"
 #include "evo/core/error.hpp"
 #include "evo/io/calibration_io.hpp"
 #include "evo/io/sequence.hpp"
@@ -10,9 +11,9 @@ namespace evo::app {
 
 namespace {
 
-std::optional<ImageSize> ParseSensor(const std::string& text) {
+std::optional<io::ImageSize> ParseSensor(const std::string& text) {
   if (text.empty()) return std::nullopt;
-  ImageSize size;
+  io::ImageSize size;
   const char* const end = text.data() + text.size();
   const auto [x, width_failure] = std::from_chars(text.data(), end, size.width);
   if (width_failure == std::errc() && x != end && *x == 'x') {
@@ -30,8 +31,8 @@ TimeNs ParseSeconds(const std::string& option, const std::string& text) {
   return *seconds;
 }
 
-Interval ParseInterval(const RecordingArguments& arguments) {
-  Interval interval{ParseSeconds("--from", arguments.from), std::nullopt};
+events::Interval ParseInterval(const RecordingArguments& arguments) {
+  events::Interval interval{ParseSeconds("--from", arguments.from), std::nullopt};
   if (!arguments.to.empty()) interval.to = ParseSeconds("--to", arguments.to);
   if (interval.to && *interval.to <= interval.from) throw Error(ErrorKind::kUsage, "--to must be greater than --from");
   return interval;
@@ -62,13 +63,13 @@ void AddRecordingOptions(CLI::App& command, RecordingArguments& arguments) {
       ->type_name("S");
 }
 
-Camera OpenCamera(const std::filesystem::path& calibration, const std::string& sensor) {
-  return Camera(ReadCalibration(calibration, ParseSensor(sensor)));
+geometry::Camera OpenCamera(const std::filesystem::path& calibration, const std::string& sensor) {
+  return geometry::Camera(io::ReadCalibration(calibration, ParseSensor(sensor)));
 }
 
 Recording OpenRecording(const RecordingArguments& arguments, RunRecord* record) {
-  const Interval interval = ParseInterval(arguments);
-  const SequenceFiles files = FindSequence(arguments.events);
+  const events::Interval interval = ParseInterval(arguments);
+  const io::SequenceFiles files = io::FindSequence(arguments.events);
   std::filesystem::path calibration = arguments.calibration;
   if (calibration.empty()) {
     if (!files.calibration) {
@@ -76,8 +77,8 @@ Recording OpenRecording(const RecordingArguments& arguments, RunRecord* record) 
     }
     calibration = *files.calibration;
   }
-  Camera camera = OpenCamera(calibration, arguments.sensor);
-  auto reader = OpenEvents(files.events, interval, camera.width(), camera.height());
+  geometry::Camera camera = OpenCamera(calibration, arguments.sensor);
+  auto reader = io::OpenEvents(files.events, interval, camera.width(), camera.height());
   record->AddLargeInput("events", files.events);
   record->AddInput("calibration", calibration);
   return {std::move(camera), files.events, std::move(reader), interval, files.ground_truth};

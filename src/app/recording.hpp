@@ -6,8 +6,8 @@
 #include <string>
 
 #include "app/run_record.hpp"
+#include "evo/events/event_reader.hpp"
 #include "evo/geometry/camera.hpp"
-#include "evo/io/event_reader.hpp"
 
 namespace evo::app {
 
@@ -24,16 +24,16 @@ struct RecordingArguments {
 void AddRecordingOptions(CLI::App& command, RecordingArguments& arguments);
 
 /// A camera from --calibration and --sensor. Throws Error.
-Camera OpenCamera(const std::filesystem::path& calibration, const std::string& sensor);
+geometry::Camera OpenCamera(const std::filesystem::path& calibration, const std::string& sensor);
 /// --sensor, for commands without events.
 void AddSensorOption(CLI::App& command, std::string& sensor);
 
 /// A recording that has been found and whose beginning has been read.
 struct Recording {
-  Camera camera;
+  geometry::Camera camera;
   std::filesystem::path events;
-  std::unique_ptr<EventReader> reader;
-  Interval interval;
+  std::unique_ptr<events::EventReader> reader;
+  events::Interval interval;
   std::optional<std::filesystem::path> ground_truth;  ///< found beside the events
 };
 

@@ -25,15 +25,15 @@ struct ReportArguments {
 void RunReport(const ReportArguments& arguments) {
   SetUpLogging(0);
   CheckOutputFolder(arguments.out, {"runs.csv", "runs.tex", "index.html"}, arguments.force);
-  const auto runs = ReadRunFolders(arguments.runs);
-  const std::string alignment = ChooseAlignment(runs, arguments.alignment);
-  const CsvTable table = MergeRuns(runs);
-  const std::string page = RunsPage(arguments.title, runs, table);
+  const auto runs = report::ReadRunFolders(arguments.runs);
+  const std::string alignment = report::ChooseAlignment(runs, arguments.alignment);
+  const report::CsvTable table = report::MergeRuns(runs);
+  const std::string page = report::RunsPage(arguments.title, runs, table);
   const InterruptGuard guard(arguments.out);
-  WriteCsv(arguments.out / "runs.csv", table);
-  WriteText(arguments.out / "runs.tex", RunsLatex(table, alignment));
+  report::WriteCsv(arguments.out / "runs.csv", table);
+  WriteText(arguments.out / "runs.tex", report::RunsLatex(table, alignment));
   WriteText(arguments.out / "index.html", page);
-  const auto failed = std::ranges::count_if(runs, [](const RunFolder& run) { return !run.failure.empty(); });
+  const auto failed = std::ranges::count_if(runs, [](const report::RunFolder& run) { return !run.failure.empty(); });
   std::cout << "runs       " << runs.size() << ", of which " << failed << " failed\n"
             << "results    " << (arguments.out / "index.html").string() << '\n';
 }

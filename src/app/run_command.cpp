@@ -24,7 +24,7 @@ struct RunArguments {
 
 struct GroundTruth {
   std::filesystem::path path;
-  Trajectory trajectory;
+  geometry::Trajectory trajectory;
 };
 
 std::optional<GroundTruth> OpenGroundTruth(const RunArguments& arguments, const Recording& recording,
@@ -32,7 +32,7 @@ std::optional<GroundTruth> OpenGroundTruth(const RunArguments& arguments, const 
   std::filesystem::path path = arguments.ground_truth;
   if (path.empty() && recording.ground_truth) path = *recording.ground_truth;
   if (path.empty()) return std::nullopt;
-  Trajectory trajectory = ReadGroundTruth(path, arguments.common.Source());
+  geometry::Trajectory trajectory = io::ReadGroundTruth(path, arguments.common.Source());
   record->AddInput("ground_truth", path);
   return GroundTruth{path, std::move(trajectory)};
 }
@@ -51,7 +51,7 @@ void RequireOverlap(const GroundTruth& truth, const Recording& recording, TimeNs
                                            " s to " + FormatTime(to) + " s; give the ground truth of this recording");
 }
 
-std::vector<std::string> ResultNames(const std::vector<Alignment>& alignments) {
+std::vector<std::string> ResultNames(const std::vector<evaluation::Alignment>& alignments) {
   auto results = TrackingResultNames();
   for (const auto& name : OdometryResultNames()) results.push_back(name);
   for (const auto& name : EvaluationResultNames(alignments)) results.push_back(name);
@@ -59,27 +59,28 @@ std::vector<std::string> ResultNames(const std::vector<Alignment>& alignments) {
 }
 
 /// `only_determined`: as far as the motion allows. Prints the summary.
-void RunEvaluationStage(StageContext* context, const GroundTruth& truth, const Trajectory& estimate,
-                        const std::vector<StampedCovariance>& covariances, const std::vector<TimeNs>& frames,
-                        const std::vector<Alignment>& alignments, bool only_determined) {
-  EvaluationOptions options = context->config.evaluation;
+void RunEvaluationStage(StageContext* context, const GroundTruth& truth, const geometry::Trajectory& estimate,
+                        const std::vector<geometry::StampedCovariance>& covariances, const std::vector<TimeNs>& frames,
+                        const std::vector<evaluation::Alignment>& alignments, bool only_determined) {
+  evaluation::EvaluationOptions options = context->config.evaluation;
   options.leave_out_undetermined = only_determined;
   const TimeNs offset = FromSeconds(options.association.estimate_clock_offset_s);
   // The truth of the whole interval counts: an estimate that covers a part of it must not look complete.
-  const EvaluationInterval interval{frames.front() + offset, frames.back() + offset};
+  const evaluation::EvaluationInterval interval{frames.front() + offset, frames.back() + offset};
   NamingPlace((context->options.out / "trajectory.txt").string() + " against " + truth.path.string(), [&] {
-    const Evaluation evaluation = context->record.Time(
-        "evaluate", [&] { return Evaluate(truth.trajectory, estimate, alignments, interval, options, covariances); });
+    const evaluation::Evaluation evaluation = context->record.Time("evaluate", [&] {
+      return evaluation::Evaluate(truth.trajectory, estimate, alignments, interval, options, covariances);
+    });
     context->record.Time("write_evaluation", [&] {
       WriteEvaluationResults(context->options.out, SequenceName(truth.path), evaluation, !context->options.no_plots,
                              context->record.manifest.rebootstraps);
     });
-    if (!evaluation.alignments.empty()) std::cout << FormatSummary(evaluation);
+    if (!evaluation.alignments.empty()) std::cout << report::FormatSummary(evaluation);
   });
 }
 
 void RunAll(const RunArguments& arguments, const std::vector<std::string>& command_line) {
-  const auto alignments = ParseAlignments(arguments.align.empty() ? kUsualAlignments : arguments.align);
+  const auto alignments = evaluation::ParseAlignments(arguments.align.empty() ? kUsualAlignments : arguments.align);
   StageContext context(arguments.common, arguments.stage, ResultNames(alignments), command_line);
   const std::filesystem::path& out = context.options.out;
   // Every input is opened before any work, so that a wrong one is reported at once.
@@ -95,10 +96,10 @@ void RunAll(const RunArguments& arguments, const std::vector<std::string>& comma
     RemoveEvaluationResults(out);
   }
 
-  Tracks tracks;
+  events::Tracks tracks;
   const TrackingOutcome tracking = RunTrackingStage(&context, &recording, &tracks);
   std::cout << FormatTracking(tracking) << std::flush;
-  const OdometryResult odometry = RunOdometryStage(&context, tracks, out / "tracks.txt", recording.camera);
+  const odometry::OdometryResult odometry = RunOdometryStage(&context, tracks, out / "tracks.txt", recording.camera);
   std::cout << FormatOdometry(odometry) << FormatSpeed(context.record.manifest, context.pool.size()) << std::flush;
   if (truth) {
     RunEvaluationStage(&context, *truth, odometry.trajectory, odometry.covariances, tracking.result.frames, alignments,

@@ -13,12 +13,12 @@ RunRecord::RunRecord(const std::vector<std::string>& command_line, const Paramet
 RunRecord::~RunRecord() { stop_.request_stop(); }
 
 void RunRecord::AddInput(const std::string& role, const std::filesystem::path& path) {
-  const std::string sha256 = Sha256(path);  // reports a file that cannot be read better than file_size does
+  const std::string sha256 = io::Sha256(path);  // reports a file that cannot be read better than file_size does
   manifest.inputs.push_back({role, path, std::filesystem::file_size(path), sha256});
 }
 
 void RunRecord::AddLargeInput(const std::string& role, const std::filesystem::path& path) {
-  checksums_.push_back({manifest.inputs.size(), std::async(std::launch::async, Sha256, path, stop_.get_token())});
+  checksums_.push_back({manifest.inputs.size(), std::async(std::launch::async, io::Sha256, path, stop_.get_token())});
   manifest.inputs.push_back({role, path, std::filesystem::file_size(path), {}});
 }
 

@@ -32,11 +32,11 @@ class RunRecord {
     return work();
   }
 
-  Manifest manifest;
+  report::Manifest manifest;
 
  private:
   struct Stopwatch {
-    std::vector<StageTime>& stages;
+    std::vector<report::StageTime>& stages;
     std::string stage;
     std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
     ~Stopwatch();

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Trajectory Shifted(Trajectory poses, TimeNs offset) {
+geometry::Trajectory Shifted(geometry::Trajectory poses, TimeNs offset) {
   for (auto& pose : poses) pose.t += offset;
   return poses;
 }
@@ -25,23 +25,23 @@ Trajectory Shifted(Trajectory poses, TimeNs offset) {
 /// A _gt.hdf5: poses, true depth and, where asked for, flow.
 class GroundTruthOutput {
  public:
-  GroundTruthOutput(const fs::path& path, const SimulatedRun& run, const Trajectory& poses, bool with_flow,
-                    TimeNs start, ThreadPool* pool)
+  GroundTruthOutput(const fs::path& path, const simulation::SimulatedRun& run, const geometry::Trajectory& poses,
+                    bool with_flow, TimeNs start, ThreadPool* pool)
       : motion_(run.motion),
-        rectified_(Rectified(run.camera.calibration())),
+        rectified_(geometry::Rectified(run.camera.calibration())),
         rectified_depth_(run.scene, rectified_, pool),
         with_flow_(with_flow),
         start_(start),
         file_(path, poses, poses) {}
 
-  void OnDepth(TimeNs t, const DepthMap& depth) {
-    const SE3 T_world_cam = motion_(t);
+  void OnDepth(TimeNs t, const events::DepthMap& depth) {
+    const geometry::SE3 T_world_cam = motion_(t);
     file_.AppendDepth(start_ + t, depth);
-    DepthMap rectified = rectified_depth_.At(t, T_world_cam);
+    events::DepthMap rectified = rectified_depth_.At(t, T_world_cam);
     file_.AppendRectifiedDepth(start_ + t, rectified);
     if (with_flow_ && last_) {
       file_.AppendFlow(start_ + last_->t,
-                       StaticFlow(rectified_, last_->depth, T_world_cam.Inverse() * last_->T_world_cam));
+                       simulation::StaticFlow(rectified_, last_->depth, T_world_cam.Inverse() * last_->T_world_cam));
     }
     if (with_flow_) last_ = {t, T_world_cam, std::move(rectified)};
   }
@@ -50,38 +50,38 @@ class GroundTruthOutput {
  private:
   struct Last {
     TimeNs t;
-    SE3 T_world_cam;
-    DepthMap depth;  ///< rectified
+    geometry::SE3 T_world_cam;
+    events::DepthMap depth;  ///< rectified
   };
 
-  const CameraMotion& motion_;
-  Camera rectified_;
-  DepthCamera rectified_depth_;
+  const simulation::CameraMotion& motion_;
+  geometry::Camera rectified_;
+  simulation::DepthCamera rectified_depth_;
   bool with_flow_;
   TimeNs start_;
-  MvsecGroundTruthWriter file_;
+  io::MvsecGroundTruthWriter file_;
   std::optional<Last> last_;
 };
 
 class MvsecOutput : public SequenceOutput {
  public:
-  MvsecOutput(const fs::path& folder, const std::string& name, const SimulatedRun& run, const Trajectory& poses,
-              const OutputOptions& options, ThreadPool* pool)
+  MvsecOutput(const fs::path& folder, const std::string& name, const simulation::SimulatedRun& run,
+              const geometry::Trajectory& poses, const OutputOptions& options, ThreadPool* pool)
       : start_(FromSeconds(options.start_s)),
         data_(folder / (name + "_data.hdf5")),
         truth_(folder / (name + "_gt.hdf5"), run, Shifted(poses, start_), options.flow, start_, pool) {
-    WriteCamchain(folder / ("camchain-imucam-" + name + ".yaml"), run.camera.calibration());
+    io::WriteCamchain(folder / ("camchain-imucam-" + name + ".yaml"), run.camera.calibration());
   }
 
-  void OnEvents(const EventColumns& events) override {
+  void OnEvents(const events::EventColumns& events) override {
     shifted_ = events;
     for (TimeNs& t : shifted_.t) t += start_;
     data_.Append(shifted_);
   }
-  void OnImage(TimeNs t, const GreyImage& image, std::size_t events_before) override {
+  void OnImage(TimeNs t, const events::GreyImage& image, std::size_t events_before) override {
     data_.AppendImage(start_ + t, image, events_before);
   }
-  void OnDepth(TimeNs t, const DepthMap& depth) override { truth_.OnDepth(t, depth); }
+  void OnDepth(TimeNs t, const events::DepthMap& depth) override { truth_.OnDepth(t, depth); }
   void Commit() override {
     data_.Commit();
     truth_.Commit();
@@ -89,28 +89,28 @@ class MvsecOutput : public SequenceOutput {
 
  private:
   TimeNs start_;
-  MvsecDataWriter data_;
+  io::MvsecDataWriter data_;
   GroundTruthOutput truth_;
-  EventColumns shifted_;
+  events::EventColumns shifted_;
 };
 
 class UzhOutput : public SequenceOutput {
  public:
-  UzhOutput(const fs::path& folder, const SimulatedRun& run, const Trajectory& poses, const OutputOptions& options,
-            bool with_depth, ThreadPool* pool)
+  UzhOutput(const fs::path& folder, const simulation::SimulatedRun& run, const geometry::Trajectory& poses,
+            const OutputOptions& options, bool with_depth, ThreadPool* pool)
       : folder_(folder), events_(folder / "events.txt"), images_(folder / "images.txt") {
-    WriteUzhCalibration(folder / "calib.txt", run.camera.calibration());
-    WriteTum(folder / "groundtruth.txt", poses);
+    io::WriteUzhCalibration(folder / "calib.txt", run.camera.calibration());
+    io::WriteTum(folder / "groundtruth.txt", poses);
     if (with_depth) depth_.emplace(folder / "depth_gt.hdf5", run, poses, options.flow, 0, pool);
   }
 
-  void OnEvents(const EventColumns& events) override { events_.Append(events); }
-  void OnImage(TimeNs t, const GreyImage& image, std::size_t) override {
+  void OnEvents(const events::EventColumns& events) override { events_.Append(events); }
+  void OnImage(TimeNs t, const events::GreyImage& image, std::size_t) override {
     const std::string name = Format("images/frame_%08zu.png", image_count_++);
-    WritePng(folder_ / name, image);
+    report::WritePng(folder_ / name, image);
     images_.stream() << FormatTime(t) << ' ' << name << '\n';
   }
-  void OnDepth(TimeNs t, const DepthMap& depth) override { depth_->OnDepth(t, depth); }
+  void OnDepth(TimeNs t, const events::DepthMap& depth) override { depth_->OnDepth(t, depth); }
   void Commit() override {
     events_.Commit();
     images_.Commit();
@@ -119,7 +119,7 @@ class UzhOutput : public SequenceOutput {
 
  private:
   fs::path folder_;
-  UzhEventWriter events_;
+  io::UzhEventWriter events_;
   OutputFile images_;
   std::size_t image_count_ = 0;
   std::optional<GroundTruthOutput> depth_;
@@ -128,8 +128,8 @@ class UzhOutput : public SequenceOutput {
 constexpr int kZoom = 2;
 constexpr TimeNs kDrawnEvents = 20'000'000;
 
-Canvas DrawImage(const GreyImage& image) {
-  Canvas canvas(kZoom * image.width, kZoom * image.height, {});
+report::Canvas DrawImage(const events::GreyImage& image) {
+  report::Canvas canvas(kZoom * image.width, kZoom * image.height, {});
   for (int y = 0; y < canvas.height; ++y) {
     for (int x = 0; x < canvas.width; ++x) {
       const std::uint8_t grey = image.grey[static_cast<std::size_t>(y / kZoom * image.width + x / kZoom)];
@@ -140,8 +140,8 @@ Canvas DrawImage(const GreyImage& image) {
 }
 
 /// Those of `events` that lie in [from, to).
-EventColumns Cut(const EventColumns& events, TimeNs from, TimeNs to) {
-  EventColumns cut;
+events::EventColumns Cut(const events::EventColumns& events, TimeNs from, TimeNs to) {
+  events::EventColumns cut;
   for (std::size_t i = 0; i < events.size(); ++i) {
     if (events.t[i] < from || events.t[i] >= to) continue;
     cut.push_back(events.t[i], events.x[i], events.y[i], events.polarity[i]);
@@ -165,8 +165,8 @@ std::vector<std::string> SequenceResultNames(SequenceFormat format, const std::s
 }
 
 std::unique_ptr<SequenceOutput> MakeSequenceOutput(SequenceFormat format, const fs::path& folder,
-                                                   const std::string& name, const SimulatedRun& run,
-                                                   const Trajectory& poses, const OutputOptions& options,
+                                                   const std::string& name, const simulation::SimulatedRun& run,
+                                                   const geometry::Trajectory& poses, const OutputOptions& options,
                                                    bool with_depth, ThreadPool* pool) {
   if (format == SequenceFormat::kUzh) {
     return std::make_unique<UzhOutput>(folder, run, poses, options, with_depth, pool);
@@ -183,7 +183,7 @@ void RemoveSequence(const fs::path& folder, SequenceFormat format, const std::st
   }
 }
 
-void PreviewOutput::OnEvents(const EventColumns& events) {
+void PreviewOutput::OnEvents(const events::EventColumns& events) {
   output_->OnEvents(events);
   if (events.empty()) return;
   recent_ = Cut(recent_, events.t.front() - kDrawnEvents, events.t.front());
@@ -192,14 +192,14 @@ void PreviewOutput::OnEvents(const EventColumns& events) {
   }
 }
 
-void PreviewOutput::OnImage(TimeNs t, const GreyImage& image, std::size_t events_before) {
+void PreviewOutput::OnImage(TimeNs t, const events::GreyImage& image, std::size_t events_before) {
   output_->OnImage(t, image, events_before);
   if (t < next_) return;
   next_ += every_;
-  const EventColumns drawn = Cut(recent_, t - kDrawnEvents, t);
-  const std::vector<Canvas> panels{DrawImage(image),
-                                   DrawEvents(drawn, image.width, image.height, PolarityColors::kRedBlue, kZoom)};
-  WritePng(folder_ / Format("frame_%08.3fs.png", ToSeconds(t)), Sheet(panels, 2, 2 * kZoom));
+  const events::EventColumns drawn = Cut(recent_, t - kDrawnEvents, t);
+  const std::vector<report::Canvas> panels{
+      DrawImage(image), report::DrawEvents(drawn, image.width, image.height, report::PolarityColors::kRedBlue, kZoom)};
+  report::WritePng(folder_ / Format("frame_%08.3fs.png", ToSeconds(t)), report::Sheet(panels, 2, 2 * kZoom));
 }
 
 }  // namespace evo::app

@@ -26,7 +26,7 @@ enum class SequenceFormat { kMvsec, kUzh };
 std::vector<std::string> SequenceResultNames(SequenceFormat format, const std::string& name);
 
 /// A sequence being written in a stream.
-class SequenceOutput : public SimulationSink {
+class SequenceOutput : public simulation::SimulationSink {
  public:
   virtual void Commit() = 0;
 };
@@ -39,8 +39,8 @@ class SequenceOutput : public SimulationSink {
 /// that the format's calibration cannot describe, kOutput. `poses` since the start of the run, which must outlive the
 /// output, as must `pool`.
 std::unique_ptr<SequenceOutput> MakeSequenceOutput(SequenceFormat format, const std::filesystem::path& folder,
-                                                   const std::string& name, const SimulatedRun& run,
-                                                   const Trajectory& poses, const OutputOptions& options,
+                                                   const std::string& name, const simulation::SimulatedRun& run,
+                                                   const geometry::Trajectory& poses, const OutputOptions& options,
                                                    bool with_depth, ThreadPool* pool);
 
 /// Removes what an earlier sequence of that format and name has left in `folder`, and nothing else there.
@@ -48,21 +48,21 @@ void RemoveSequence(const std::filesystem::path& folder, SequenceFormat format, 
 
 /// Hands everything on to `output` and draws, every `every` from the first image on, the image and the events of the
 /// 20 ms before it side by side: preview/NAME_SECONDSs.png.
-class PreviewOutput : public SimulationSink {
+class PreviewOutput : public simulation::SimulationSink {
  public:
-  PreviewOutput(SimulationSink* output, std::filesystem::path folder, TimeNs every)
+  PreviewOutput(simulation::SimulationSink* output, std::filesystem::path folder, TimeNs every)
       : output_(output), folder_(std::move(folder)), every_(every) {}
 
-  void OnEvents(const EventColumns& events) override;
-  void OnImage(TimeNs t, const GreyImage& image, std::size_t events_before) override;
-  void OnDepth(TimeNs t, const DepthMap& depth) override { output_->OnDepth(t, depth); }
+  void OnEvents(const events::EventColumns& events) override;
+  void OnImage(TimeNs t, const events::GreyImage& image, std::size_t events_before) override;
+  void OnDepth(TimeNs t, const events::DepthMap& depth) override { output_->OnDepth(t, depth); }
 
  private:
-  SimulationSink* output_;
+  simulation::SimulationSink* output_;
   std::filesystem::path folder_;
   TimeNs every_;
   TimeNs next_ = 0;
-  EventColumns recent_;
+  events::EventColumns recent_;
 };
 
 }  // namespace evo::app

@@ -41,30 +41,32 @@ struct SimulateConfig {
   SimulateConfig(const SimulateConfig&) = delete;  // the parameters refer to the fields
   SimulateConfig& operator=(const SimulateConfig&) = delete;
 
-  SceneOptions scene;
+  simulation::SceneOptions scene;
   OutputOptions output;
   Parameters parameters;
 };
 
 /// The part of the scene that --from and --duration name.
-SimulatedRun ChosenPart(const SimulateArguments& arguments, const SceneOptions& scene, const SimulatedRun& run) {
+simulation::SimulatedRun ChosenPart(const SimulateArguments& arguments, const simulation::SceneOptions& scene,
+                                    const simulation::SimulatedRun& run) {
   const TimeNs from = FromSeconds(arguments.from_s);
   const TimeNs duration = arguments.duration_s ? FromSeconds(*arguments.duration_s) : run.duration - from;
-  if (duration > 0 && from + duration <= run.duration) return PartOf(run, from, duration);
+  if (duration > 0 && from + duration <= run.duration) return simulation::PartOf(run, from, duration);
   const std::string longer =
       scene.motion == "file" ? "give a longer trajectory" : "raise motion." + scene.motion + ".duration_s";
   throw Error(ErrorKind::kUsage, "--from, --duration: the motion ends after " + FormatTime(run.duration) +
                                      " s; ask for less, or " + longer);
 }
 
-void PrintSummary(const std::string& name, const Camera& camera, const Trajectory& poses,
-                  const SimulationCounts& counts, double wall_s, int threads) {
+void PrintSummary(const std::string& name, const geometry::Camera& camera, const geometry::Trajectory& poses,
+                  const simulation::SimulationCounts& counts, double wall_s, int threads) {
   const double duration_s = ToSeconds(poses.back().t);
   const double pixels = static_cast<double>(camera.width()) * camera.height();
   const auto events = static_cast<double>(counts.events);
   const auto positive = static_cast<double>(counts.positive);
   std::cout << "sequence   " << name
-            << Format(": %.1f s, %.1f m, %d x %d px\n", duration_s, PathLength(poses), camera.width(), camera.height())
+            << Format(": %.1f s, %.1f m, %d x %d px\n", duration_s, geometry::PathLength(poses), camera.width(),
+                      camera.height())
             << Format("events     %zu, %.3f M/s, %.2f negative for each positive one\n", counts.events,
                       1e-6 * events / duration_s, positive > 0 ? (events - positive) / positive : 0.0)
             << Format("rendering  each pixel %.0f times a second, %zu images, %zu depth maps\n",
@@ -88,7 +90,7 @@ void PrintFiles(const fs::path& out, const std::vector<std::string>& names) {
 struct Order {
   Order(const SimulateArguments& arguments, const SimulateConfig& config)
       : format(arguments.format == "uzh" ? SequenceFormat::kUzh : SequenceFormat::kMvsec) {
-    const SimulationOptions& simulation = config.scene.simulation;
+    const simulation::SimulationOptions& simulation = config.scene.simulation;
     if (arguments.out.empty()) {
       throw Error(ErrorKind::kUsage, "simulate: --out is required; see evo-run simulate --help");
     }
@@ -112,13 +114,13 @@ struct Order {
   std::string name;   ///< of the sequence
 };
 
-void AddInputs(const SimulateArguments& arguments, const SceneOptions& scene, RunRecord* record) {
+void AddInputs(const SimulateArguments& arguments, const simulation::SceneOptions& scene, RunRecord* record) {
   if (!arguments.common.config_file.empty()) record->AddInput("scene", arguments.common.config_file);
   if (scene.motion == "file") record->AddInput("motion", scene.motion_file);
   if (fs::is_regular_file(scene.calibration)) record->AddInput("calibration", scene.calibration);
 }
 
-void AddCounts(const SimulationCounts& counts, RunRecord* record) {
+void AddCounts(const simulation::SimulationCounts& counts, RunRecord* record) {
   record->AddCount("events", counts.events);
   record->AddCount("positive_events", counts.positive);
   record->AddCount("images", counts.images);
@@ -135,9 +137,9 @@ void RunSimulate(const SimulateArguments& arguments, const std::vector<std::stri
     return;
   }
   const Order order(arguments, config);
-  const SimulatedRun run =
-      NamingPlace(order.place, [&] { return ChosenPart(arguments, config.scene, MakeRun(config.scene)); });
-  const Trajectory poses = Sample(run.motion, run.duration, config.output.pose_hz);
+  const simulation::SimulatedRun run =
+      NamingPlace(order.place, [&] { return ChosenPart(arguments, config.scene, simulation::MakeRun(config.scene)); });
+  const geometry::Trajectory poses = simulation::Sample(run.motion, run.duration, config.output.pose_hz);
   RunRecord record(command_line, config.parameters);
   AddInputs(arguments, config.scene, &record);
 
@@ -147,16 +149,18 @@ void RunSimulate(const SimulateArguments& arguments, const std::vector<std::stri
   const auto output = MakeSequenceOutput(order.format, staged.path(), order.name, run, poses, config.output,
                                          config.scene.simulation.depth_hz > 0.0, &pool);
   PreviewOutput preview(output.get(), staged.path() / "preview", FromSeconds(arguments.preview_every_s));
-  SimulationSink* const sink = arguments.preview_every_s > 0.0 ? static_cast<SimulationSink*>(&preview) : output.get();
-  const SimulationCounts counts = record.Time("simulate", [&] {
+  simulation::SimulationSink* const sink =
+      arguments.preview_every_s > 0.0 ? static_cast<simulation::SimulationSink*>(&preview) : output.get();
+  const simulation::SimulationCounts counts = record.Time("simulate", [&] {
     Progress progress("simulate", !arguments.common.quiet);
     const TimeNs lead_in = std::min(FromSeconds(config.scene.simulation.lead_in_s), run.before);
-    return Simulate(run.scene, run.camera, run.motion, lead_in, run.duration, config.scene.sensor,
-                    config.scene.simulation, static_cast<std::uint64_t>(config.scene.seed), &pool, &progress, sink);
+    return simulation::Simulate(run.scene, run.camera, run.motion, lead_in, run.duration, config.scene.sensor,
+                                config.scene.simulation, static_cast<std::uint64_t>(config.scene.seed), &pool,
+                                &progress, sink);
   });
   output->Commit();
   AddCounts(counts, &record);
-  WriteManifest(staged.path() / "manifest.json", record.manifest);
+  report::WriteManifest(staged.path() / "manifest.json", record.manifest);
   if (arguments.common.force) RemoveSequence(arguments.out, order.format, order.name);
   staged.Commit();
   PrintSummary(order.name, run.camera, poses, counts, record.manifest.stages.back().seconds, pool.size());

@@ -19,7 +19,7 @@
 #include "evo/report/figures.hpp"
 #include "evo/report/latex_tables.hpp"
 #include "evo/report/tables.hpp"
-#include "evo/tracking/tracker.hpp"
+#include "evo/tracking/track_events.hpp"
 
 namespace evo::app {
 
@@ -44,15 +44,15 @@ DrawingSchedule ScheduleDrawings(const StageContext& context, const Recording& r
           std::nullopt};
 }
 
-void DrawTrackFigures(const std::filesystem::path& folder, const LifetimeStatistics& lifetimes,
-                      std::span<const LiveFeatures> live) {
-  Gnuplot gnuplot(folder);
-  gnuplot.Draw("lifetime", LifetimeFigure("lifetime", lifetimes));
-  gnuplot.Draw("lifetime_seconds", LifetimeSecondsFigure("lifetime_seconds", lifetimes));
-  gnuplot.Draw("live_features", LiveFeaturesFigure("live_features", live));
+void DrawTrackFigures(const std::filesystem::path& folder, const evaluation::LifetimeStatistics& lifetimes,
+                      std::span<const report::LiveFeatures> live) {
+  report::Gnuplot gnuplot(folder);
+  gnuplot.Draw("lifetime", report::LifetimeFigure("lifetime", lifetimes));
+  gnuplot.Draw("lifetime_seconds", report::LifetimeSecondsFigure("lifetime_seconds", lifetimes));
+  gnuplot.Draw("live_features", report::LiveFeaturesFigure("live_features", live));
 }
 
-std::string FormatGroundScale(const GroundScale& scale) {
+std::string FormatGroundScale(const odometry::GroundScale& scale) {
   if (!scale.found) return "scale      arbitrary and not held: too short a way over a road\n";
   return Format("scale      %s, by %zu tracks on the ground along %.0f %% of the path, uncertain by %.2f %%\n",
                 scale.metric ? "metres" : "arbitrary but held", scale.tracks, 100.0 * scale.covered,
@@ -78,7 +78,7 @@ StageContext::StageContext(const CommonOptions& common, StageOptions stage_optio
 
 void StageContext::Finish() {
   record.FinishChecksums();
-  WriteManifest(options.out / "manifest.json", record.manifest);
+  report::WriteManifest(options.out / "manifest.json", record.manifest);
 }
 
 void AddStageOptions(CLI::App& command, StageOptions& options) {
@@ -104,20 +104,22 @@ void RemoveTrackingResults(const std::filesystem::path& folder) {
   RemoveDrawings(folder / "images");
 }
 
-TrackingOutcome RunTrackingStage(StageContext* context, Recording* recording, Tracks* kept) {
+TrackingOutcome RunTrackingStage(StageContext* context, Recording* recording, events::Tracks* kept) {
   const bool draw = context->options.draw_every_s > 0.0 || !context->options.no_plots;
   EventDrawing drawing(context->options.out / "images", recording->reader->first_stamp(),
                        draw ? ScheduleDrawings(*context, *recording) : DrawingSchedule());
-  TrackResults results(context->options.out / "tracks.txt", {DescribePositions(context->config.tracker)}, kept);
+  TrackResults results(context->options.out / "tracks.txt", {tracking::DescribePositions(context->config.tracker)},
+                       kept);
   TrackingOutcome outcome;
   outcome.result = context->record.Time("track", [&] {
     Progress progress("tracking", context->show_progress);
     return NamingPlace(recording->events.string(), [&] {
-      return TrackEvents(
+      return tracking::TrackEvents(
           recording->reader.get(), recording->camera, context->config.tracker, &context->pool,
-          [&](Tracks observations) { results.Take(std::move(observations)); },
+          [&](events::Tracks observations) { results.Take(std::move(observations)); },
           [&](double done) { progress.Update(done); },
-          draw ? [&](const TrackingView& view) { drawing.Observe(view); } : std::function<void(const TrackingView&)>{});
+          draw ? [&](const tracking::TrackingView& view) { drawing.Observe(view); }
+               : std::function<void(const tracking::TrackingView&)>{});
     });
   });
   const auto& frames = outcome.result.frames;
@@ -125,9 +127,9 @@ TrackingOutcome RunTrackingStage(StageContext* context, Recording* recording, Tr
   outcome.observations = results.observations();
   context->record.Time("write_tracks", [&] {
     results.Commit();
-    WriteLifetimes(context->options.out / "lifetime.csv", outcome.lifetimes);
+    report::WriteLifetimes(context->options.out / "lifetime.csv", outcome.lifetimes);
     WriteText(context->options.out / "tables" / "lifetime.tex",
-              LifetimeTable(SequenceName(recording->events), outcome.lifetimes));
+              report::LifetimeTable(SequenceName(recording->events), outcome.lifetimes));
     if (!context->options.no_plots) {
       DrawTrackFigures(context->options.out / "plots", outcome.lifetimes, results.Live(frames));
     }
@@ -149,20 +151,22 @@ void RemoveOdometryResults(const std::filesystem::path& folder) {
   RemoveResults(folder, R"(manifest\.json|trajectory\.txt|pose_covariance\.csv|map\.ply)");
 }
 
-OdometryResult RunOdometryStage(StageContext* context, const Tracks& tracks, const std::filesystem::path& source,
-                                const Camera& camera) {
-  OdometryResult result = context->record.Time("odometry", [&] {
+odometry::OdometryResult RunOdometryStage(StageContext* context, const events::Tracks& tracks,
+                                          const std::filesystem::path& source, const geometry::Camera& camera) {
+  odometry::OdometryResult result = context->record.Time("odometry", [&] {
     std::optional<Progress> progress;
-    std::optional<OdometryStage> shown;
+    std::optional<odometry::OdometryStage> shown;
     return NamingPlace(source.string(), [&] {
-      return RunOdometry(
-          tracks, camera, context->config.odometry, context->pool.size(), [&](OdometryStage stage, double done) {
-            if (shown != stage) {
-              progress.emplace(stage == OdometryStage::kFrames ? "odometry" : "refining", context->show_progress);
-            }
-            shown = stage;
-            progress->Update(done);
-          });
+      return odometry::RunOdometry(tracks, camera, context->config.odometry, context->pool.size(),
+                                   [&](odometry::OdometryStage stage, double done) {
+                                     if (shown != stage) {
+                                       progress.emplace(
+                                           stage == odometry::OdometryStage::kFrames ? "odometry" : "refining",
+                                           context->show_progress);
+                                     }
+                                     shown = stage;
+                                     progress->Update(done);
+                                   });
     });
   });
   for (const TimeNs t : result.lost) spdlog::debug("no pose at {} s", FormatTime(t));
@@ -171,11 +175,11 @@ OdometryResult RunOdometryStage(StageContext* context, const Tracks& tracks, con
     context->record.manifest.rebootstraps.push_back(result.bootstraps[i]);
   }
   context->record.Time("write_trajectory", [&] {
-    WriteTum(context->options.out / "trajectory.txt", result.trajectory);
+    io::WriteTum(context->options.out / "trajectory.txt", result.trajectory);
     if (!result.covariances.empty()) {
-      WritePoseCovariances(context->options.out / "pose_covariance.csv", result.covariances);
+      io::WritePoseCovariances(context->options.out / "pose_covariance.csv", result.covariances);
     }
-    WriteMap(result.points, context->options.out / "map.ply");
+    odometry::WriteMap(result.points, context->options.out / "map.ply");
   });
   context->record.AddCount("frames", static_cast<std::size_t>(result.frames));
   context->record.AddCount("key_frames", static_cast<std::size_t>(result.key_frames));
@@ -191,19 +195,19 @@ std::string FormatTracking(const TrackingOutcome& outcome) {
   const auto frames = std::max<std::size_t>(1, outcome.result.frames.size());
   return Format("tracking   %zu events, %zu event frames, %.0f live features\n", outcome.result.events,
                 outcome.result.frames.size(), static_cast<double>(outcome.observations) / static_cast<double>(frames)) +
-         FormatLifetimes(outcome.lifetimes);
+         report::FormatLifetimes(outcome.lifetimes);
 }
 
-std::string FormatOdometry(const OdometryResult& result) {
+std::string FormatOdometry(const odometry::OdometryResult& result) {
   return Format("odometry   %zu poses of %d frames, %d key frames, %zu points, started anew %zu times\n",
                 result.trajectory.size(), result.frames, result.key_frames, result.points.size(),
                 result.bootstraps.empty() ? std::size_t{0} : result.bootstraps.size() - 1) +
          (result.ground ? FormatGroundScale(*result.ground) : "");
 }
 
-std::string FormatSpeed(const Manifest& manifest, int threads) {
+std::string FormatSpeed(const report::Manifest& manifest, int threads) {
   const double recorded = manifest.recorded_s.value_or(0.0);
-  const double factor = RealTimeFactor(manifest).value_or(0.0);
+  const double factor = report::RealTimeFactor(manifest).value_or(0.0);
   return Format("speed      %.1f s of events in %.1f s on %d threads: %.1f x real time\n", recorded,
                 factor > 0.0 ? recorded / factor : 0.0, threads, factor);
 }

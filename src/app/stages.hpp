@@ -10,8 +10,8 @@
 #include "app/recording.hpp"
 #include "app/run_record.hpp"
 #include "evo/core/parallel.hpp"
+#include "evo/evaluation/lifetime.hpp"
 #include "evo/odometry/odometry.hpp"
-#include "evo/tracking/lifetime.hpp"
 #include "evo/tracking/track_events.hpp"
 
 namespace evo::app {
@@ -47,8 +47,8 @@ struct StageContext {
 };
 
 struct TrackingOutcome {
-  TrackingResult result;
-  LifetimeStatistics lifetimes;
+  tracking::TrackingResult result;
+  evaluation::LifetimeStatistics lifetimes;
   std::size_t observations = 0;
 };
 
@@ -59,20 +59,20 @@ void RemoveTrackingResults(const std::filesystem::path& folder);
 /// Tracks the recording and writes tracks.txt, lifetime.csv, tables/lifetime.tex, the plots lifetime, lifetime_seconds
 /// and live_features and, in images/, what EventDrawing draws. `kept`: where the tracks go, too, if anywhere; they are
 /// not in memory otherwise. Throws Error.
-TrackingOutcome RunTrackingStage(StageContext* context, Recording* recording, Tracks* kept = nullptr);
+TrackingOutcome RunTrackingStage(StageContext* context, Recording* recording, events::Tracks* kept = nullptr);
 
 std::vector<std::string> OdometryResultNames();
 void RemoveOdometryResults(const std::filesystem::path& folder);
 /// Runs the odometry and writes trajectory.txt, pose_covariance.csv (if there is a final refinement) and map.ply.
 /// `source` is the file of the tracks, for messages. Throws
 /// Error.
-OdometryResult RunOdometryStage(StageContext* context, const Tracks& tracks, const std::filesystem::path& source,
-                                const Camera& camera);
+odometry::OdometryResult RunOdometryStage(StageContext* context, const events::Tracks& tracks,
+                                          const std::filesystem::path& source, const geometry::Camera& camera);
 
 /// The stages' summaries for people: aligned lines that end with a newline.
 std::string FormatTracking(const TrackingOutcome& outcome);
-std::string FormatOdometry(const OdometryResult& result);
+std::string FormatOdometry(const odometry::OdometryResult& result);
 /// Seconds of the recording per second of computing, see RealTimeFactor.
-std::string FormatSpeed(const Manifest& manifest, int threads);
+std::string FormatSpeed(const report::Manifest& manifest, int threads);
 
 }  // namespace evo::app

@@ -5,6 +5,7 @@
 #include "app/error_place.hpp"
 #include "app/output_folder.hpp"
 #include "app/recording.hpp"
+#include "evo/io/track_io.hpp"
 #include "evo/core/error.hpp"
 #include "evo/core/format.hpp"
 #include "evo/core/output_file.hpp"
@@ -20,28 +21,29 @@ namespace {
 
 struct Truth {
   std::string source;
-  std::vector<TrueTrack> tracks;
+  std::vector<evaluation::TrueTrack> tracks;
 };
 
 Truth FindTruth(const TrackEvaluationArguments& arguments, const TruePoses& poses, const Config& config,
-                const std::vector<FeatureTrack>& tracks) {
+                const std::vector<evaluation::FeatureTrack>& tracks) {
   const TimeNs max_gap = FromSeconds(config.evaluation.association.max_interpolation_s);
   if (!arguments.true_tracks.empty()) {
-    return {"tracks", TruthFromTracks(tracks, ReadTracks(arguments.true_tracks), max_gap)};
+    return {"tracks", evaluation::TruthFromTracks(tracks, io::ReadTracks(arguments.true_tracks), max_gap)};
   }
-  const Camera camera = OpenCamera(arguments.calibration, arguments.sensor);
-  const Trajectory trajectory = ReadGroundTruth(poses.path, poses.source);
-  const bool with_depth = arguments.truth == "depth" || (arguments.truth == "auto" && HasDepthMaps(poses.path));
-  if (!with_depth) return {"triangulated", TruthFromTriangulation(tracks, trajectory, camera, max_gap)};
-  const DepthMapReader maps(poses.path);
-  return {"depth", TruthFromDepth(tracks, trajectory, camera, maps, max_gap, config.track_truth)};
+  const geometry::Camera camera = OpenCamera(arguments.calibration, arguments.sensor);
+  const geometry::Trajectory trajectory = io::ReadGroundTruth(poses.path, poses.source);
+  const bool with_depth = arguments.truth == "depth" || (arguments.truth == "auto" && io::HasDepthMaps(poses.path));
+  if (!with_depth) return {"triangulated", evaluation::TruthFromTriangulation(tracks, trajectory, camera, max_gap)};
+  const io::DepthMapReader maps(poses.path);
+  return {"depth", evaluation::TruthFromDepth(tracks, trajectory, camera, maps, max_gap, config.track_truth)};
 }
 
 /// The tracks of the interval, in the clock of the truth.
-Tracks ReadInterval(const std::filesystem::path& path, const EvaluationInterval& interval, TimeNs clock_offset) {
-  Tracks tracks = ReadTracks(path);
+events::Tracks ReadInterval(const std::filesystem::path& path, const evaluation::EvaluationInterval& interval,
+                            TimeNs clock_offset) {
+  events::Tracks tracks = io::ReadTracks(path);
   for (auto& observation : tracks) observation.t += clock_offset;
-  std::erase_if(tracks, [&](const TrackObservation& observation) {
+  std::erase_if(tracks, [&](const events::TrackObservation& observation) {
     return (interval.from && observation.t < *interval.from) || (interval.to && observation.t > *interval.to);
   });
   if (tracks.empty()) throw Error(ErrorKind::kNothingToDo, path.string() + ": no tracks in the interval to be judged");
@@ -49,18 +51,18 @@ Tracks ReadInterval(const std::filesystem::path& path, const EvaluationInterval&
 }
 
 /// Two features make a frame where only lifetimes are asked for.
-bool HaveFrames(const Tracks& tracks) { return AreSynchronous(tracks, 2); }
+bool HaveFrames(const events::Tracks& tracks) { return odometry::AreSynchronous(tracks, 2); }
 
-LifetimeStatistics FindLifetimes(const Tracks& in_frames) {
+evaluation::LifetimeStatistics FindLifetimes(const events::Tracks& in_frames) {
   std::vector<TimeNs> frames;
   for (const auto& observation : in_frames) {
     if (frames.empty() || frames.back() != observation.t) frames.push_back(observation.t);
   }
-  return ComputeLifetimes(in_frames, frames);
+  return evaluation::ComputeLifetimes(in_frames, frames);
 }
 
 /// Nothing behind the interval is asked of a track.
-void CutVisibility(std::vector<TrueTrack>* truth, std::optional<TimeNs> end) {
+void CutVisibility(std::vector<evaluation::TrueTrack>* truth, std::optional<TimeNs> end) {
   for (auto& track : *truth) {
     if (end && track.visible_until) track.visible_until = std::min(*track.visible_until, *end);
   }
@@ -108,49 +110,50 @@ void RemoveTrackEvaluationResults(const std::filesystem::path& folder) {
   RemovePlots(folder, "track_error|lifetime|lifetime_seconds");
 }
 
-TrackEvaluation EvaluateTracks(const TrackEvaluationArguments& arguments, const TruePoses& poses, const Config& config,
-                               RunRecord* record) {
+TrackEvaluation EvaluateTracks(const TrackEvaluationArguments& arguments, const TruePoses& poses,
+                                           const Config& config, RunRecord* record) {
   record->AddInput("tracks", arguments.tracks);
   if (!arguments.true_tracks.empty()) record->AddInput("true_tracks", arguments.true_tracks);
   if (!arguments.calibration.empty()) record->AddInput("calibration", arguments.calibration);
   const TimeNs offset = FromSeconds(config.evaluation.association.estimate_clock_offset_s);
-  const Tracks tracks =
+  const events::Tracks tracks =
       record->Time("read_tracks", [&] { return ReadInterval(arguments.tracks, poses.interval, offset); });
   TrackEvaluation evaluation;
   evaluation.accuracy = record->Time("evaluate_tracks", [&] {
     return NamingPlace(arguments.tracks, [&] {
-      const auto grouped = GroupById(tracks);
+      const auto grouped = evaluation::GroupById(tracks);
       Truth truth = FindTruth(arguments, poses, config, grouped);
       CutVisibility(&truth.tracks, poses.interval.to);
-      return EvaluateTracks(grouped, truth.tracks, truth.source, arguments.thresholds_px);
+      return evaluation::EvaluateTracks(grouped, truth.tracks, truth.source, arguments.thresholds_px);
     });
   });
   const auto& resampling = config.odometry.resampling;
   if (!HaveFrames(tracks)) evaluation.made_frames_s = resampling.frame_interval_s;
-  evaluation.lifetimes = FindLifetimes(evaluation.made_frames_s ? Resample(tracks, resampling) : tracks);
+  evaluation.lifetimes = FindLifetimes(evaluation.made_frames_s ? odometry::Resample(tracks, resampling) : tracks);
   record->AddCount("tracks", evaluation.accuracy.tracks.size());
   record->AddCount("track_observations", tracks.size());
-  record->AddCount("judged_tracks", static_cast<std::size_t>(Count(evaluation.accuracy, TrackVerdict::kJudged)));
+  record->AddCount("judged_tracks",
+                   static_cast<std::size_t>(evaluation::Count(evaluation.accuracy, evaluation::TrackVerdict::kJudged)));
   return evaluation;
 }
 
 void WriteTrackEvaluation(const std::filesystem::path& folder, const std::string& sequence,
                           const TrackEvaluation& evaluation, bool with_plots) {
-  WriteTrackQuality(folder / "track_quality.csv", evaluation.accuracy);
-  WriteTrackErrors(folder / "track_errors.csv", evaluation.accuracy);
-  WriteLifetimes(folder / "lifetime.csv", evaluation.lifetimes);
-  WriteText(folder / "tables" / "lifetime.tex", LifetimeTable(sequence, evaluation.lifetimes));
+  report::WriteTrackQuality(folder / "track_quality.csv", evaluation.accuracy);
+  report::WriteTrackErrors(folder / "track_errors.csv", evaluation.accuracy);
+  report::WriteLifetimes(folder / "lifetime.csv", evaluation.lifetimes);
+  WriteText(folder / "tables" / "lifetime.tex", report::LifetimeTable(sequence, evaluation.lifetimes));
   if (!with_plots) return;
-  Gnuplot gnuplot(folder / "plots");
-  gnuplot.Draw("track_error", TrackErrorFigure("track_error", evaluation.accuracy));
-  gnuplot.Draw("lifetime", LifetimeFigure("lifetime", evaluation.lifetimes));
-  gnuplot.Draw("lifetime_seconds", LifetimeSecondsFigure("lifetime_seconds", evaluation.lifetimes));
+  report::Gnuplot gnuplot(folder / "plots");
+  gnuplot.Draw("track_error", report::TrackErrorFigure("track_error", evaluation.accuracy));
+  gnuplot.Draw("lifetime", report::LifetimeFigure("lifetime", evaluation.lifetimes));
+  gnuplot.Draw("lifetime_seconds", report::LifetimeSecondsFigure("lifetime_seconds", evaluation.lifetimes));
 }
 
 std::string FormatTrackEvaluation(const TrackEvaluation& evaluation) {
   const std::string note =
       evaluation.made_frames_s ? Format(", in frames made every %g s", *evaluation.made_frames_s) : "";
-  return FormatTrackAccuracy(evaluation.accuracy) + FormatLifetimes(evaluation.lifetimes, note);
+  return report::FormatTrackAccuracy(evaluation.accuracy) + report::FormatLifetimes(evaluation.lifetimes, note);
 }
 
 }  // namespace evo::app

@@ -8,9 +8,9 @@
 
 #include "app/config.hpp"
 #include "app/run_record.hpp"
+#include "evo/evaluation/lifetime.hpp"
 #include "evo/evaluation/track_accuracy.hpp"
 #include "evo/io/trajectory_io.hpp"
-#include "evo/tracking/lifetime.hpp"
 
 namespace evo::app {
 
@@ -31,23 +31,23 @@ void AddTrackEvaluationOptions(CLI::App& command, TrackEvaluationArguments& argu
 /// The poses to judge by, whose path is empty if there are none, and when, in the clock of the truth.
 struct TruePoses {
   std::filesystem::path path;
-  GroundTruthSource source = GroundTruthSource::kLoam;
-  EvaluationInterval interval;
+  io::GroundTruthSource source = io::GroundTruthSource::kLoam;
+  evaluation::EvaluationInterval interval;
 };
 
 /// track_quality.csv, track_errors.csv, lifetime.csv and tables/lifetime.tex.
 std::vector<std::string> TrackEvaluationResultNames();
 
 struct TrackEvaluation {
-  TrackAccuracy accuracy;
-  LifetimeStatistics lifetimes;
+  evaluation::TrackAccuracy accuracy;
+  evaluation::LifetimeStatistics lifetimes;
   /// Asynchronous tracks live in frames that are made as the odometry makes them, this far apart; else empty.
   std::optional<double> made_frames_s;
 };
 
 /// Reads and judges the tracks. Throws Error.
-TrackEvaluation EvaluateTracks(const TrackEvaluationArguments& arguments, const TruePoses& poses, const Config& config,
-                               RunRecord* record);
+TrackEvaluation EvaluateTracks(const TrackEvaluationArguments& arguments, const TruePoses& poses,
+                                           const Config& config, RunRecord* record);
 /// Removes those files and the plots from `folder`, and manifest.json, which tells of them.
 void RemoveTrackEvaluationResults(const std::filesystem::path& folder);
 /// Writes those files and plots/track_error, plots/lifetime and plots/lifetime_seconds. Throws Error.

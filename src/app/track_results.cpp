@@ -4,12 +4,12 @@
 
 namespace evo::app {
 
-TrackResults::TrackResults(std::filesystem::path path, const std::vector<std::string>& comments, Tracks* kept)
+TrackResults::TrackResults(std::filesystem::path path, const std::vector<std::string>& comments, events::Tracks* kept)
     : writer_(std::move(path), comments), kept_(kept) {}
 
-void TrackResults::Take(Tracks observations) {
+void TrackResults::Take(events::Tracks observations) {
   if (observations.empty()) return;
-  RoundAsWritten(&observations);  // the odometry from tracks.txt shall give the same trajectory
+  io::RoundAsWritten(&observations);  // the odometry from tracks.txt shall give the same trajectory
   writer_.Write(observations);
   lifetimes_.Add(observations);
   lifetimes_.EndBefore(observations.back().t);
@@ -21,8 +21,8 @@ void TrackResults::Take(Tracks observations) {
   if (kept_) kept_->insert(kept_->end(), observations.begin(), observations.end());
 }
 
-std::vector<LiveFeatures> TrackResults::Live(std::span<const TimeNs> frames) const {
-  std::vector<LiveFeatures> live;
+std::vector<report::LiveFeatures> TrackResults::Live(std::span<const TimeNs> frames) const {
+  std::vector<report::LiveFeatures> live;
   auto seen = live_.begin();
   for (const TimeNs t : frames) {
     live.push_back({t, 0});

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "evo/io/tracks.hpp"
+#include "evo/evaluation/lifetime.hpp"
+#include "evo/io/track_io.hpp"
 #include "evo/report/figures.hpp"
-#include "evo/tracking/lifetime.hpp"
 
 namespace evo::app {
 
@@ -17,23 +17,25 @@ namespace evo::app {
 class TrackResults {
  public:
   /// Opens `path`. Throws Error (kOutput).
-  TrackResults(std::filesystem::path path, const std::vector<std::string>& comments, Tracks* kept);
+  TrackResults(std::filesystem::path path, const std::vector<std::string>& comments, events::Tracks* kept);
 
   /// The next observations; features missing in a frame do not come again. Throws Error (kOutput).
-  void Take(Tracks observations);
+  void Take(events::Tracks observations);
   /// Puts the file into place. Throws Error (kOutput).
   void Commit() { writer_.Commit(); }
 
   std::size_t observations() const { return observations_; }
-  LifetimeStatistics Lifetimes(std::span<const TimeNs> frames) const { return lifetimes_.Statistics(frames); }
+  evaluation::LifetimeStatistics Lifetimes(std::span<const TimeNs> frames) const {
+    return lifetimes_.Statistics(frames);
+  }
   /// In each of the `frames`, ascending.
-  std::vector<LiveFeatures> Live(std::span<const TimeNs> frames) const;
+  std::vector<report::LiveFeatures> Live(std::span<const TimeNs> frames) const;
 
  private:
-  TrackWriter writer_;
-  Tracks* kept_;
-  LifetimeCounter lifetimes_;
-  std::vector<LiveFeatures> live_;  // where there are any
+  io::TrackWriter writer_;
+  events::Tracks* kept_;
+  evaluation::LifetimeCounter lifetimes_;
+  std::vector<report::LiveFeatures> live_;  // where there are any
   std::size_t observations_ = 0;
 };
 

@@ -3,34 +3,34 @@
 #include <algorithm>
 #include <limits>
 
-#include "evaluation/pose_errors.hpp"
+#include "evaluation/trajectory/pose_errors.hpp"
+#include "evaluation/trajectory/projection.hpp"
 #include "evo/core/error.hpp"
-#include "evo/evaluation/projection.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 
 namespace {
 
 std::string Span(TimeNs from, TimeNs to) { return FormatTime(from) + " to " + FormatTime(to) + " s"; }
 
-Trajectory Crop(const Trajectory& trajectory, TimeNs from, TimeNs to) {
-  const auto first = std::ranges::lower_bound(trajectory, from, {}, &StampedPose::t);
-  const auto last = std::ranges::upper_bound(trajectory, to, {}, &StampedPose::t);
-  return first < last ? Trajectory(first, last) : Trajectory();
+geometry::Trajectory Crop(const geometry::Trajectory& trajectory, TimeNs from, TimeNs to) {
+  const auto first = std::ranges::lower_bound(trajectory, from, {}, &geometry::StampedPose::t);
+  const auto last = std::ranges::upper_bound(trajectory, to, {}, &geometry::StampedPose::t);
+  return first < last ? geometry::Trajectory(first, last) : geometry::Trajectory();
 }
 
 /// The truth of the interval and, where they are no farther than `longest_gap`, the poses just before and after it:
 /// with them it reaches to where the estimate begins and ends.
-Trajectory Cover(const Trajectory& truth, TimeNs from, TimeNs to, TimeNs longest_gap) {
-  auto first = std::ranges::lower_bound(truth, from, {}, &StampedPose::t);
-  auto last = std::ranges::upper_bound(truth, to, {}, &StampedPose::t);
+geometry::Trajectory Cover(const geometry::Trajectory& truth, TimeNs from, TimeNs to, TimeNs longest_gap) {
+  auto first = std::ranges::lower_bound(truth, from, {}, &geometry::StampedPose::t);
+  auto last = std::ranges::upper_bound(truth, to, {}, &geometry::StampedPose::t);
   if (first != truth.begin() && from - (first - 1)->t <= longest_gap) --first;
   if (last != truth.end() && last->t - to <= longest_gap) ++last;
   return {first, last};
 }
 
 /// `estimate` with its stamps moved to the clock of the truth, cut to the interval.
-Trajectory MoveToTruthClock(Trajectory estimate, TimeNs offset, TimeNs from, TimeNs to) {
+geometry::Trajectory MoveToTruthClock(geometry::Trajectory estimate, TimeNs offset, TimeNs from, TimeNs to) {
   for (auto& pose : estimate) pose.t += offset;
   return Crop(estimate, from, to);
 }
@@ -40,7 +40,7 @@ struct Coverage {
   std::int64_t gaps = 0;
 };
 
-Coverage ComputeCoverage(std::span<const StampedPose> poses, TimeNs from, TimeNs to, TimeNs longest_gap) {
+Coverage ComputeCoverage(std::span<const geometry::StampedPose> poses, TimeNs from, TimeNs to, TimeNs longest_gap) {
   Coverage coverage;
   TimeNs missing = 0;
   TimeNs last = from;
@@ -71,8 +71,8 @@ void RequireNoSeconds(std::span<const Alignment> alignments, const RelativePoseE
 }
 
 /// The pairs within the interval. Truth outside it is no partner, except to interpolate from.
-std::vector<PosePair> PairWithin(const Trajectory& truth, const Trajectory& estimate, const Evaluation& evaluation,
-                                 const AssociationOptions& options) {
+std::vector<PosePair> PairWithin(const geometry::Trajectory& truth, const geometry::Trajectory& estimate,
+                                 const Evaluation& evaluation, const AssociationOptions& options) {
   const bool crops = options.association != "interpolate" && evaluation.has_stamps;
   auto pairs = Associate(crops ? Crop(truth, evaluation.from, evaluation.to) : truth, estimate, options);
   std::erase_if(pairs, [&](const PosePair& p) { return p.t_truth < evaluation.from || p.t_truth > evaluation.to; });
@@ -85,7 +85,7 @@ std::vector<PosePair> PairWithin(const Trajectory& truth, const Trajectory& esti
 }
 
 /// `poses` moved by `similarity`, then laid into the plane.
-Trajectory Moved(Trajectory poses, const Similarity& similarity, const std::string& plane) {
+geometry::Trajectory Moved(geometry::Trajectory poses, const Similarity& similarity, const std::string& plane) {
   for (auto& pose : poses) pose.T_world_cam = Project(similarity * pose.T_world_cam, plane);
   return poses;
 }
@@ -100,9 +100,9 @@ std::vector<PosePair> Moved(std::vector<PosePair> pairs, const Similarity& simil
 
 /// What all alignments have in common.
 struct Comparison {
-  Trajectory truth;     // projected
-  Trajectory estimate;  // as it was read
-  Trajectory judged;    // the estimate within the interval, in the truth's clock
+  geometry::Trajectory truth;     // projected
+  geometry::Trajectory estimate;  // as it was read
+  geometry::Trajectory judged;    // the estimate within the interval, in the truth's clock
   std::vector<PosePair> pairs;
   std::vector<double> distances;
 };
@@ -174,9 +174,9 @@ void Register(Parameters& parameters, EvaluationOptions& options) {
   Register(parameters, options.segments);
 }
 
-Evaluation Evaluate(const Trajectory& truth, const Trajectory& estimate, std::span<const Alignment> alignments,
-                    const EvaluationInterval& interval, const EvaluationOptions& options,
-                    std::span<const StampedCovariance> covariances) {
+Evaluation Evaluate(const geometry::Trajectory& truth, const geometry::Trajectory& estimate,
+                    std::span<const Alignment> alignments, const EvaluationInterval& interval,
+                    const EvaluationOptions& options, std::span<const geometry::StampedCovariance> covariances) {
   if (truth.empty() || estimate.empty()) {
     throw Error(ErrorKind::kNothingToDo, std::string(truth.empty() ? "the ground truth" : "the estimate") +
                                              " holds no poses; check what was written to it");
@@ -221,4 +221,4 @@ Evaluation Evaluate(const Trajectory& truth, const Trajectory& estimate, std::sp
   return evaluation;
 }
 
-}  // namespace evo
+}  // namespace evo::evaluation

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-namespace evo {
+namespace evo::evaluation {
 
 Statistics ComputeStatistics(std::span<const double> errors) {
   if (errors.empty()) {
@@ -36,4 +36,4 @@ Statistics ComputeStatistics(std::span<const double> errors) {
   return statistics;
 }
 
-}  // namespace evo
+}  // namespace evo::evaluation

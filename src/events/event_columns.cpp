@@ -1,6 +1,6 @@
 #include "evo/events/event_columns.hpp"
 
-namespace evo {
+namespace evo::events {
 
 void EventColumns::clear() {
   t.clear();
@@ -30,4 +30,4 @@ void EventColumns::push_back(TimeNs time, std::uint16_t column, std::uint16_t ro
   polarity.push_back(sign);
 }
 
-}  // namespace evo
+}  // namespace evo::events

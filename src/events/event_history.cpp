@@ -5,7 +5,7 @@
 #include <functional>
 #include <stdexcept>
 
-namespace evo {
+namespace evo::events {
 
 namespace {
 
@@ -197,4 +197,4 @@ void EventHistory::Gather(const MovingPatch& patch, LocalEvents* local) const {
   local->polarity.assign(polarities, polarities + count);
 }
 
-}  // namespace evo
+}  // namespace evo::events

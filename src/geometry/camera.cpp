@@ -3,7 +3,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-namespace evo {
+namespace evo::geometry {
 
 namespace {
 
@@ -105,4 +105,4 @@ bool Camera::Contains(const Vector2d& pixel, double margin) const {
          pixel.y() <= height() - 1 - margin;
 }
 
-}  // namespace evo
+}  // namespace evo::geometry

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace evo {
+namespace evo::geometry {
 
 namespace {
 
@@ -76,4 +76,4 @@ SE3 Interpolate(const SE3& a, const SE3& b, double s) {
   return {a.rotation().slerp(s, b.rotation()), (1.0 - s) * a.translation() + s * b.translation()};
 }
 
-}  // namespace evo
+}  // namespace evo::geometry

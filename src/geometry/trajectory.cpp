@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace evo {
+namespace evo::geometry {
 
 std::optional<SE3> PoseAt(const Trajectory& trajectory, TimeNs t, TimeNs max_interval) {
   const auto after = std::ranges::lower_bound(trajectory, t, {}, &StampedPose::t);
@@ -23,4 +23,4 @@ double PathLength(const Trajectory& trajectory) {
   return length;
 }
 
-}  // namespace evo
+}  // namespace evo::geometry

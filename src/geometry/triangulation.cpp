@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace evo {
+namespace evo::geometry {
 
 namespace {
 
@@ -82,4 +82,4 @@ std::optional<TriangulatedPoint> TriangulateViews(std::span<const View> views) {
   return result;
 }
 
-}  // namespace evo
+}  // namespace evo::geometry

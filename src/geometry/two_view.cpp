@@ -11,7 +11,7 @@
 
 #include "evo/geometry/triangulation.hpp"
 
-namespace evo {
+namespace evo::geometry {
 
 namespace {
 
@@ -246,4 +246,4 @@ std::optional<RelativePose> EstimateRelativePose(std::span<const Correspondence>
   return best.pose;
 }
 
-}  // namespace evo
+}  // namespace evo::geometry

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <string>
 
-namespace evo {
+namespace evo::io {
 
 namespace {
 
@@ -46,4 +46,4 @@ std::size_t ByteSource::Read(std::int64_t offset, std::size_t count, char* buffe
   return done;
 }
 
-}  // namespace evo
+}  // namespace evo::io

@@ -6,7 +6,7 @@
 
 #include "evo/core/error.hpp"
 
-namespace evo {
+namespace evo::io {
 
 /// Random access to the bytes of a regular file. Failures are Errors of kind kInput.
 class ByteSource {
@@ -27,4 +27,4 @@ class ByteSource {
   std::int64_t size_ = 0;
 };
 
-}  // namespace evo
+}  // namespace evo::io

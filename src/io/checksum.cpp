@@ -9,7 +9,7 @@
 
 #include "io/byte_source.hpp"
 
-namespace evo {
+namespace evo::io {
 
 namespace {
 
@@ -45,4 +45,4 @@ std::string Sha256(const std::filesystem::path& path, const std::stop_token& sto
   return text;
 }
 
-}  // namespace evo
+}  // namespace evo::io

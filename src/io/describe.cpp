@@ -8,17 +8,17 @@
 
 #include "evo/core/error.hpp"
 #include "evo/io/calibration_io.hpp"
-#include "evo/io/depth_maps.hpp"
-#include "evo/io/event_reader.hpp"
+#include "evo/io/depth_map_reader.hpp"
 #include "evo/io/file_kind.hpp"
+#include "evo/io/open_events.hpp"
 #include "evo/io/sequence.hpp"
-#include "evo/io/tracks.hpp"
+#include "evo/io/track_io.hpp"
 #include "evo/io/trajectory_io.hpp"
-#include "io/hdf5.hpp"
-#include "io/mvsec_events.hpp"
+#include "io/events/mvsec_events.hpp"
+#include "io/hdf5/hdf5.hpp"
 #include "io/text_lines.hpp"
 
-namespace evo {
+namespace evo::io {
 
 namespace {
 
@@ -52,7 +52,7 @@ struct EventExtent {
   std::size_t events = 0;
   std::size_t positive = 0;
 
-  void Add(const EventColumns& block) {
+  void Add(const events::EventColumns& block) {
     for (std::size_t i = 0; i < block.size(); ++i) {
       left = std::min<int>(left, block.x[i]);
       right = std::max<int>(right, block.x[i]);
@@ -75,7 +75,7 @@ struct EventExtent {
 Description DescribeEventText(const std::filesystem::path& path) {
   const auto reader = OpenEvents(path, {}, kAnySensor, kAnySensor);
   EventExtent extent;
-  EventColumns block;
+  events::EventColumns block;
   TimeNs last = reader->first_stamp();
   while (reader->Next(&block)) {
     extent.Add(block);
@@ -93,7 +93,7 @@ void AddMvsecEvents(Description* description, const hdf5::File& file) {
   description->values.emplace_back("events", std::to_string(rows));
   AddSpan(description, "", rows, events.StampAt(0), events.StampAt(rows - 1), "events/s");
   EventExtent extent;
-  EventColumns block;
+  events::EventColumns block;
   const hsize_t count = std::min(kSampleRows, rows);
   for (hsize_t i = 0; i < kSamples; ++i) {
     const hsize_t first = (rows - count) * i / (kSamples - 1);
@@ -103,7 +103,7 @@ void AddMvsecEvents(Description* description, const hdf5::File& file) {
   extent.Describe(description, " (from samples)");
 }
 
-void AddPoses(Description* description, const std::string& prefix, const Trajectory& trajectory) {
+void AddPoses(Description* description, const std::string& prefix, const geometry::Trajectory& trajectory) {
   double length = 0.0;
   for (std::size_t i = 1; i < trajectory.size(); ++i) {
     length += (trajectory[i].T_world_cam.translation() - trajectory[i - 1].T_world_cam.translation()).norm();
@@ -112,7 +112,7 @@ void AddPoses(Description* description, const std::string& prefix, const Traject
   description->values.emplace_back(prefix + "path length", Fixed(length, 3, "m"));
 }
 
-void AddTrajectory(Description* description, const std::string& prefix, const Trajectory& trajectory) {
+void AddTrajectory(Description* description, const std::string& prefix, const geometry::Trajectory& trajectory) {
   AddPoses(description, prefix, trajectory);
   AddSpan(description, prefix, trajectory.size(), trajectory.front().t, trajectory.back().t, "poses/s");
 }
@@ -143,7 +143,7 @@ Description DescribeHdf5(const std::filesystem::path& path) {
 }
 
 Description DescribeTracks(const std::filesystem::path& path) {
-  const Tracks tracks = ReadTracks(path);
+  const events::Tracks tracks = ReadTracks(path);
   struct Life {
     TimeNs first = 0;
     TimeNs last = 0;
@@ -173,8 +173,8 @@ Description DescribeTracks(const std::filesystem::path& path) {
 }
 
 Description DescribeCalibration(const std::filesystem::path& path, bool says_size) {
-  const Calibration c = ReadCalibration(path);
-  const bool radtan = c.distortion == Distortion::kRadTan;
+  const geometry::Calibration c = ReadCalibration(path);
+  const bool radtan = c.distortion == geometry::Distortion::kRadTan;
   std::string coefficients;
   for (std::size_t i = 0; i < (radtan ? 5 : 4); ++i) {
     if (i > 0) coefficients += ' ';
@@ -231,4 +231,4 @@ Description Describe(const std::filesystem::path& path) {
   }
 }
 
-}  // namespace evo
+}  // namespace evo::io

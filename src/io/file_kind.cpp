@@ -7,10 +7,10 @@
 
 #include "evo/core/error.hpp"
 #include "io/byte_source.hpp"
-#include "io/hdf5.hpp"
+#include "io/hdf5/hdf5.hpp"
 #include "io/text_lines.hpp"
 
-namespace evo {
+namespace evo::io {
 
 namespace {
 
@@ -114,4 +114,4 @@ void RequireKind(const std::filesystem::path& path, std::initializer_list<FileKi
   throw Error(ErrorKind::kInput, path.string() + ": this is " + KindName(kind) + "; expected " + expected);
 }
 
-}  // namespace evo
+}  // namespace evo::io

@@ -7,7 +7,7 @@
 
 #include "evo/core/error.hpp"
 
-namespace evo {
+namespace evo::io {
 
 namespace {
 
@@ -56,4 +56,4 @@ SequenceFiles FindSequence(const fs::path& path) {
   return files;
 }
 
-}  // namespace evo
+}  // namespace evo::io

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <iterator>
 
-namespace evo {
+namespace evo::io {
 
 namespace {
 
@@ -90,4 +90,4 @@ std::string Quote(std::string_view text) {
   return quoted + (text.size() > kQuoted ? "...'" : "'");
 }
 
-}  // namespace evo
+}  // namespace evo::io

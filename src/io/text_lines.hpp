@@ -10,7 +10,7 @@
 
 #include "evo/core/error.hpp"
 
-namespace evo {
+namespace evo::io {
 
 /// The lines of a text file that hold something: blank ones and comments (`#`) are passed over, \r\n is a line end.
 class TextLines {
@@ -54,4 +54,4 @@ std::string FormatNumber(double value);
 /// 'text' for messages: bytes that do not print are replaced and long text is cut.
 std::string Quote(std::string_view text);
 
-}  // namespace evo
+}  // namespace evo::io

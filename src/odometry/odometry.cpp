@@ -7,7 +7,7 @@
 
 #include "evo/core/error.hpp"
 
-namespace evo {
+namespace evo::odometry {
 
 namespace {
 
@@ -26,7 +26,8 @@ std::vector<Segment> CutSegments(const FrameHandler& handler) {
 }
 
 /// How the refinement of a segment has moved its last frame that has had a pose before and after, in the world.
-SE3 MoveOfEnd(const std::vector<int>& old_frames, const std::vector<SE3>& old_poses, const Segment& segment) {
+geometry::SE3 MoveOfEnd(const std::vector<int>& old_frames, const std::vector<geometry::SE3>& old_poses,
+                        const Segment& segment) {
   for (std::size_t old = old_frames.size(); old-- > 0;) {
     const auto at = std::ranges::lower_bound(segment.frames, old_frames[old]);
     if (at == segment.frames.end() || *at != old_frames[old]) continue;
@@ -38,15 +39,15 @@ SE3 MoveOfEnd(const std::vector<int>& old_frames, const std::vector<SE3>& old_po
 /// Refines every segment and carries each change of a segment's end on to those after it.
 void RefineSegments(const FinalRefinementOptions& options, const std::vector<Frame>& frames,
                     const std::function<void(double)>& progress, ThreadPool* pool, std::vector<Segment>* segments) {
-  SE3 T_new_old;  // of the world
+  geometry::SE3 T_new_old;  // of the world
   int before = 0;
   const double count = static_cast<double>(segments->size());
   for (std::size_t i = 0; i < segments->size(); ++i) {
     Segment& segment = (*segments)[i];
-    for (SE3& pose : segment.T_cam_world) pose = pose * T_new_old.Inverse();
+    for (geometry::SE3& pose : segment.T_cam_world) pose = pose * T_new_old.Inverse();
     for (Point& point : segment.points) point.position = T_new_old * point.position;
     const std::vector<int> old_frames = segment.frames;
-    const std::vector<SE3> old_poses = segment.T_cam_world;
+    const std::vector<geometry::SE3> old_poses = segment.T_cam_world;
     const int after = i + 1 < segments->size() ? (*segments)[i + 1].frames.front() : static_cast<int>(frames.size());
     RefineSegment(
         options, frames, before, after, [&](double share) { progress((static_cast<double>(i) + share) / count); }, pool,
@@ -57,8 +58,8 @@ void RefineSegments(const FinalRefinementOptions& options, const std::vector<Fra
 }
 
 /// Of the camera in the world, from that of the left twist of T_cam_world.
-Matrix6d InWorld(const SE3& T_cam_world, const Matrix6d& covariance) {
-  Matrix6d turn = Matrix6d::Zero();
+geometry::Matrix6d InWorld(const geometry::SE3& T_cam_world, const geometry::Matrix6d& covariance) {
+  geometry::Matrix6d turn = geometry::Matrix6d::Zero();
   turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = T_cam_world.Inverse().RotationMatrix();
   return turn * covariance * turn.transpose();
 }
@@ -84,8 +85,8 @@ void Register(Parameters& parameters, OdometryOptions& options) {
   Register(parameters, options.ground);
 }
 
-OdometryResult RunOdometry(const Tracks& tracks, const Camera& camera, const OdometryOptions& options, int threads,
-                           const OdometryProgress& progress) {
+OdometryResult RunOdometry(const events::Tracks& tracks, const geometry::Camera& camera, const OdometryOptions& options,
+                           int threads, const OdometryProgress& progress) {
   OdometryResult result;
   result.resampled = !AreSynchronous(tracks);
   if (result.resampled) {
@@ -130,4 +131,4 @@ OdometryResult RunOdometry(const Tracks& tracks, const Camera& camera, const Odo
   return result;
 }
 
-}  // namespace evo
+}  // namespace evo::odometry

@@ -9,7 +9,7 @@
 #include "evo/core/output_file.hpp"
 #include "report/text_file.hpp"
 
-namespace evo {
+namespace evo::report {
 
 namespace {
 
@@ -142,4 +142,4 @@ void WriteManifest(const std::filesystem::path& path, const Manifest& manifest) 
   file.Commit();
 }
 
-}  // namespace evo
+}  // namespace evo::report

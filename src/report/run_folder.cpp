@@ -5,10 +5,10 @@
 #include <sstream>
 
 #include "evo/core/error.hpp"
-#include "report/run_measures.hpp"
+#include "report/tables/run_measures.hpp"
 #include "report/text_file.hpp"
 
-namespace evo {
+namespace evo::report {
 
 namespace fs = std::filesystem;
 
@@ -163,4 +163,4 @@ std::vector<RunFolder> ReadRunFolders(const std::vector<fs::path>& paths) {
   return runs;
 }
 
-}  // namespace evo
+}  // namespace evo::report

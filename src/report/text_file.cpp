@@ -7,7 +7,7 @@
 
 #include "evo/core/error.hpp"
 
-namespace evo {
+namespace evo::report {
 
 std::string ReadTextFile(const std::filesystem::path& path) {
   const auto fail = [&] {
@@ -21,4 +21,4 @@ std::string ReadTextFile(const std::filesystem::path& path) {
   return text;
 }
 
-}  // namespace evo
+}  // namespace evo::report

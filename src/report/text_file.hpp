@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <string>
 
-namespace evo {
+namespace evo::report {
 
 /// The bytes of a file. Throws Error (kInput).
 std::string ReadTextFile(const std::filesystem::path& path);
 
-}  // namespace evo
+}  // namespace evo::report

@@ -6,7 +6,7 @@
 #include "evo/core/format.hpp"
 #include "evo/report/tables.hpp"
 
-namespace evo {
+namespace evo::report {
 
 namespace {
 
@@ -14,19 +14,19 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 using Value = std::variant<std::string, std::int64_t, double>;
 
-const char* VerdictName(TrackVerdict verdict) {
+const char* VerdictName(evaluation::TrackVerdict verdict) {
   switch (verdict) {
-    case TrackVerdict::kJudged:
+    case evaluation::TrackVerdict::kJudged:
       return "judged";
-    case TrackVerdict::kTooShort:
+    case evaluation::TrackVerdict::kTooShort:
       return "too_short";
-    case TrackVerdict::kNoTruth:
+    case evaluation::TrackVerdict::kNoTruth:
       return "no_truth";
-    case TrackVerdict::kNoDepth:
+    case evaluation::TrackVerdict::kNoDepth:
       return "no_depth";
-    case TrackVerdict::kMoves:
+    case evaluation::TrackVerdict::kMoves:
       return "moves";
-    case TrackVerdict::kNotTriangulated:
+    case evaluation::TrackVerdict::kNotTriangulated:
       return "not_triangulated";
   }
   return "";
@@ -38,7 +38,7 @@ TableRow QualityRow(const std::string& quantity, const std::string& unit, double
           {"age_high_s", age_high_s}, {"value", value}};
 }
 
-void AppendThreshold(const ThresholdAccuracy& accuracy, std::vector<TableRow>* rows) {
+void AppendThreshold(const evaluation::ThresholdAccuracy& accuracy, std::vector<TableRow>* rows) {
   const auto& error = accuracy.error_px;
   const auto& age = accuracy.feature_age_s;
   const auto add = [&](const char* quantity, const char* unit, const Value& value) {
@@ -67,7 +67,7 @@ void AppendThreshold(const ThresholdAccuracy& accuracy, std::vector<TableRow>* r
   add("expected_feature_age_normalized", "share", accuracy.expected_age_normalized);
 }
 
-void AppendErrorOverAge(const AgeBin& bin, std::vector<TableRow>* rows) {
+void AppendErrorOverAge(const evaluation::AgeBin& bin, std::vector<TableRow>* rows) {
   const auto add = [&](const char* quantity, const char* unit, const Value& value) {
     rows->push_back(QualityRow(quantity, unit, kNone, bin.low_s, bin.high_s, value));
   };
@@ -78,8 +78,8 @@ void AppendErrorOverAge(const AgeBin& bin, std::vector<TableRow>* rows) {
   add("error_over_age_p75", "px", bin.p75_px);
 }
 
-TableRow ErrorRow(const TrackErrors& track, const std::vector<double>& thresholds_px) {
-  const Statistics error = ComputeStatistics(track.errors_px);
+TableRow ErrorRow(const evaluation::TrackErrors& track, const std::vector<double>& thresholds_px) {
+  const evaluation::Statistics error = evaluation::ComputeStatistics(track.errors_px);
   TableRow row{{"id", track.id},
                {"start", FormatTime(track.start)},
                {"verdict", std::string(VerdictName(track.verdict))},
@@ -104,16 +104,17 @@ TableRow ErrorRow(const TrackErrors& track, const std::vector<double>& threshold
 
 }  // namespace
 
-void WriteTrackQuality(const std::filesystem::path& path, const TrackAccuracy& accuracy) {
+void WriteTrackQuality(const std::filesystem::path& path, const evaluation::TrackAccuracy& accuracy) {
   std::vector<TableRow> rows;
   const auto add = [&](const std::string& quantity, const char* unit, const Value& value) {
     rows.push_back(QualityRow(quantity, unit, kNone, kNone, kNone, value));
   };
   add("truth", "name", accuracy.truth);
   add("tracks", "count", static_cast<std::int64_t>(accuracy.tracks.size()));
-  for (const auto verdict : {TrackVerdict::kJudged, TrackVerdict::kTooShort, TrackVerdict::kNoTruth,
-                             TrackVerdict::kNoDepth, TrackVerdict::kMoves, TrackVerdict::kNotTriangulated}) {
-    add(std::string("tracks_") + VerdictName(verdict), "count", Count(accuracy, verdict));
+  for (const auto verdict : {evaluation::TrackVerdict::kJudged, evaluation::TrackVerdict::kTooShort,
+                             evaluation::TrackVerdict::kNoTruth, evaluation::TrackVerdict::kNoDepth,
+                             evaluation::TrackVerdict::kMoves, evaluation::TrackVerdict::kNotTriangulated}) {
+    add(std::string("tracks_") + VerdictName(verdict), "count", evaluation::Count(accuracy, verdict));
   }
   add("expected_feature_age_normalized_1_to_31_px", "share", accuracy.expected_age_normalized);
   for (const auto& threshold : accuracy.thresholds) AppendThreshold(threshold, &rows);
@@ -121,22 +122,22 @@ void WriteTrackQuality(const std::filesystem::path& path, const TrackAccuracy& a
   WriteCsv(path, rows);
 }
 
-void WriteTrackErrors(const std::filesystem::path& path, const TrackAccuracy& accuracy) {
+void WriteTrackErrors(const std::filesystem::path& path, const evaluation::TrackAccuracy& accuracy) {
   std::vector<TableRow> rows;
   for (const auto& track : accuracy.tracks) rows.push_back(ErrorRow(track, accuracy.thresholds_px));
   WriteCsv(path, rows);
 }
 
-std::string FormatTrackAccuracy(const TrackAccuracy& accuracy) {
-  std::string text =
-      Format("tracks     %lld of %zu judged, truth: %s", static_cast<long long>(Count(accuracy, TrackVerdict::kJudged)),
-             accuracy.tracks.size(), accuracy.truth.c_str());
-  for (const auto& [verdict, name] : {std::pair{TrackVerdict::kTooShort, "too short"},
-                                      {TrackVerdict::kNoTruth, "without truth"},
-                                      {TrackVerdict::kNoDepth, "without depth"},
-                                      {TrackVerdict::kMoves, "on what moves"},
-                                      {TrackVerdict::kNotTriangulated, "not triangulated"}}) {
-    const auto count = static_cast<long long>(Count(accuracy, verdict));
+std::string FormatTrackAccuracy(const evaluation::TrackAccuracy& accuracy) {
+  std::string text = Format("tracks     %lld of %zu judged, truth: %s",
+                            static_cast<long long>(evaluation::Count(accuracy, evaluation::TrackVerdict::kJudged)),
+                            accuracy.tracks.size(), accuracy.truth.c_str());
+  for (const auto& [verdict, name] : {std::pair{evaluation::TrackVerdict::kTooShort, "too short"},
+                                      {evaluation::TrackVerdict::kNoTruth, "without truth"},
+                                      {evaluation::TrackVerdict::kNoDepth, "without depth"},
+                                      {evaluation::TrackVerdict::kMoves, "on what moves"},
+                                      {evaluation::TrackVerdict::kNotTriangulated, "not triangulated"}}) {
+    const auto count = static_cast<long long>(evaluation::Count(accuracy, verdict));
     if (count > 0) text += Format("; %lld %s", count, name);
   }
   text +=
@@ -154,4 +155,4 @@ std::string FormatTrackAccuracy(const TrackAccuracy& accuracy) {
   return text;
 }
 
-}  // namespace evo
+}  // namespace evo::report

@@ -9,7 +9,7 @@
 #include "evo/io/calibration_io.hpp"
 #include "evo/io/trajectory_io.hpp"
 
-namespace evo {
+namespace evo::simulation {
 
 namespace {
 
@@ -17,10 +17,10 @@ constexpr double kViewAhead = 250.0;  // m of road beyond the end of the drive, 
 
 constexpr double kMostPixels = 4e6;  // four times the largest event camera, at some 150 bytes each
 
-Calibration FindCalibration(const std::string& name) {
-  if (name == "davis346") return MvsecDavis346();
-  if (name == "davis240c") return UzhDavis240c();
-  const Calibration calibration = ReadCalibration(name);
+geometry::Calibration FindCalibration(const std::string& name) {
+  if (name == "davis346") return geometry::MvsecDavis346();
+  if (name == "davis240c") return geometry::UzhDavis240c();
+  const geometry::Calibration calibration = io::ReadCalibration(name);
   const std::string size = std::to_string(calibration.width) + " x " + std::to_string(calibration.height) + " px";
   if (static_cast<double>(calibration.width) * calibration.height > kMostPixels) {
     throw Error(ErrorKind::kInput, name + ": a sensor of " + size + " is too large to be simulated; 4 million are not");
@@ -30,11 +30,11 @@ Calibration FindCalibration(const std::string& name) {
 
 Error Misfit(const std::string& what) { return {ErrorKind::kConfiguration, what}; }
 
-Trajectory ReadMotionFile(const SceneOptions& options) {
+geometry::Trajectory ReadMotionFile(const SceneOptions& options) {
   if (options.motion_file.empty()) {
     throw Misfit("motion.kind is 'file' but motion.file names none; give a TUM trajectory");
   }
-  Trajectory trajectory = ReadTum(options.motion_file);
+  geometry::Trajectory trajectory = io::ReadTum(options.motion_file);
   if (trajectory.size() < 2) {
     throw Error(ErrorKind::kInput, options.motion_file + ": a single pose is no motion; give two or more");
   }
@@ -62,8 +62,8 @@ Motion MakeFreeMotion(const SceneOptions& options) {
   if (options.motion == "slider") {
     return {MakeSliderMotion(options.slider), FromSeconds(options.slider.duration_s), options.slider.length_m};
   }
-  const Trajectory trajectory = ReadMotionFile(options);
-  return {MakeMotionThrough(trajectory), trajectory.back().t - trajectory.front().t, PathLength(trajectory)};
+  const geometry::Trajectory trajectory = ReadMotionFile(options);
+  return {MakeMotionThrough(trajectory), trajectory.back().t - trajectory.front().t, geometry::PathLength(trajectory)};
 }
 
 }  // namespace
@@ -90,7 +90,7 @@ void Register(Parameters& p, SceneOptions& o) {
 
 SimulatedRun MakeRun(const SceneOptions& options) {
   const auto seed = static_cast<std::uint64_t>(options.seed);
-  const Camera camera(FindCalibration(options.calibration));
+  const geometry::Camera camera(FindCalibration(options.calibration));
   if (options.motion == "vehicle") {
     if (options.kind != "street") {
       throw Misfit("motion.kind is 'vehicle' but scene.kind '" + options.kind +
@@ -124,8 +124,8 @@ SimulatedRun PartOf(const SimulatedRun& run, TimeNs from, TimeNs duration) {
   return part;
 }
 
-Trajectory Sample(const CameraMotion& motion, TimeNs duration, double hz) {
-  Trajectory trajectory;
+geometry::Trajectory Sample(const CameraMotion& motion, TimeNs duration, double hz) {
+  geometry::Trajectory trajectory;
   for (std::size_t k = 0;; ++k) {
     const TimeNs t = std::min(FromSeconds(static_cast<double>(k) / hz), duration);
     trajectory.push_back({t, motion(t)});
@@ -133,4 +133,4 @@ Trajectory Sample(const CameraMotion& motion, TimeNs duration, double hz) {
   }
 }
 
-}  // namespace evo
+}  // namespace evo::simulation

@@ -8,9 +8,9 @@
 
 #include "evo/simulation/renderer.hpp"
 #include "evo/simulation/true_maps.hpp"
-#include "simulation/exposure.hpp"
+#include "simulation/sensor/exposure.hpp"
 
-namespace evo {
+namespace evo::simulation {
 
 namespace {
 
@@ -39,8 +39,9 @@ class Schedule {
 
 class Simulation {
  public:
-  Simulation(const Scene& scene, const Camera& camera, const CameraMotion& motion, const SensorOptions& sensor,
-             const SimulationOptions& options, std::uint64_t seed, ThreadPool* pool, SimulationSink* sink)
+  Simulation(const Scene& scene, const geometry::Camera& camera, const CameraMotion& motion,
+             const SensorOptions& sensor, const SimulationOptions& options, std::uint64_t seed, ThreadPool* pool,
+             SimulationSink* sink)
       : scene_(scene),
         camera_(camera),
         motion_(motion),
@@ -79,7 +80,7 @@ class Simulation {
 
   /// The state of the pixels at `t`.
   void RenderStart(TimeNs t) {
-    const SE3 T_world_cam = motion_(t);
+    const geometry::SE3 T_world_cam = motion_(t);
     pool_->ForEach(tiles_.size(), [&](std::size_t i) {
       const auto visible = renderer_.FindVisible(tiles_[i], t, t, T_world_cam, T_world_cam);
       renderer_.Render(tiles_[i], visible, t, T_world_cam, &tile_radiance_[i]);
@@ -88,8 +89,8 @@ class Simulation {
   }
 
   void RenderSlab(TimeNs begin, TimeNs end) {
-    const SE3 T_world_begin = motion_(begin);
-    const SE3 T_world_end = motion_(end);
+    const geometry::SE3 T_world_begin = motion_(begin);
+    const geometry::SE3 T_world_end = motion_(end);
     pool_->ForEach(tiles_.size(), [&](std::size_t i) {
       const Tile& tile = tiles_[i];
       const auto visible = renderer_.FindVisible(tile, begin, end, T_world_begin, T_world_end);
@@ -178,7 +179,7 @@ class Simulation {
   /// All tiles at `t` into `frame_`.
   void RenderFrame(TimeNs t) {
     frame_.resize(PixelsOf({0, 0, camera_.width(), camera_.height()}));
-    const SE3 T_world_cam = motion_(t);
+    const geometry::SE3 T_world_cam = motion_(t);
     pool_->ForEach(tiles_.size(), [&](std::size_t i) {
       const Tile& tile = tiles_[i];
       const auto visible = renderer_.FindVisible(tile, t, t, T_world_cam, T_world_cam);
@@ -202,7 +203,7 @@ class Simulation {
   };
 
   const Scene& scene_;
-  const Camera& camera_;
+  const geometry::Camera& camera_;
   const CameraMotion& motion_;
   const SimulationOptions& options_;
   Renderer renderer_;
@@ -212,10 +213,10 @@ class Simulation {
   SimulationSink* sink_;
   std::vector<Tile> tiles_;
   std::vector<Renderer::Radiance> tile_radiance_;  ///< of the last render
-  std::vector<EventColumns> tile_events_;
+  std::vector<events::EventColumns> tile_events_;
   std::vector<std::size_t> tile_renders_;
   std::vector<Event> waiting_;  ///< not delivered yet
-  EventColumns batch_;          ///< delivered last
+  events::EventColumns batch_;  ///< delivered last
   std::vector<float> frame_;
   Schedule images_;
   Schedule depth_maps_;
@@ -236,10 +237,11 @@ void Register(Parameters& p, SimulationOptions& o) {
   p.Add("simulation.depth_hz", &o.depth_hz, 0.0, 1000.0, "depth maps a second, about 0.2 MB each; 0: none");
 }
 
-SimulationCounts Simulate(const Scene& scene, const Camera& camera, const CameraMotion& motion, TimeNs lead_in,
-                          TimeNs duration, const SensorOptions& sensor, const SimulationOptions& options,
-                          std::uint64_t seed, ThreadPool* pool, Progress* progress, SimulationSink* sink) {
+SimulationCounts Simulate(const Scene& scene, const geometry::Camera& camera, const CameraMotion& motion,
+                          TimeNs lead_in, TimeNs duration, const SensorOptions& sensor,
+                          const SimulationOptions& options, std::uint64_t seed, ThreadPool* pool, Progress* progress,
+                          SimulationSink* sink) {
   return Simulation(scene, camera, motion, sensor, options, seed, pool, sink).Run(lead_in, duration, progress);
 }
 
-}  // namespace evo
+}  // namespace evo::simulation

@@ -1,10 +1,10 @@
-#include "evo/tracking/feature_tracker.hpp"
+#include "tracking/feature_tracker.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
-namespace evo {
+namespace evo::tracking {
 
 namespace {
 
@@ -31,7 +31,7 @@ Eigen::Vector2d UnexpectedFlow(const FeatureAlignment& alignment) {
 
 }  // namespace
 
-FeatureTracker::FeatureTracker(const Camera& camera, const TrackerOptions& options, ThreadPool* pool)
+FeatureTracker::FeatureTracker(const geometry::Camera& camera, const TrackerOptions& options, ThreadPool* pool)
     : options_(options),
       width_(camera.width()),
       height_(camera.height()),
@@ -41,7 +41,7 @@ FeatureTracker::FeatureTracker(const Camera& camera, const TrackerOptions& optio
       refill_(options),
       oddity_judge_(options.odd_share) {}
 
-void FeatureTracker::Process(const EventHistory& history, TimeNs t, const std::function<void()>& read_ahead) {
+void FeatureTracker::Process(const events::EventHistory& history, TimeNs t, const std::function<void()>& read_ahead) {
   if (last_) Track(history, t);
   if (options_.ego_motion) {
     const double step_s = last_ ? ToSeconds(t - *last_) : 0.0;
@@ -55,8 +55,8 @@ void FeatureTracker::Process(const EventHistory& history, TimeNs t, const std::f
   if (detected_) Refill(history, t);
 }
 
-Tracks FeatureTracker::Observations() const {
-  Tracks observations;
+events::Tracks FeatureTracker::Observations() const {
+  events::Tracks observations;
   for (const auto& feature : features_) {
     if (feature.withdrawn) continue;
     observations.push_back({feature.id, *last_, feature.filtered.x(), feature.filtered.y()});
@@ -79,7 +79,7 @@ std::vector<ObservedWindow> FeatureTracker::Windows() const {
   return windows;
 }
 
-void FeatureTracker::Track(const EventHistory& history, TimeNs t) {
+void FeatureTracker::Track(const events::EventHistory& history, TimeNs t) {
   AlignAll(history, t, {});
   if (options_.follow_jolts) FollowJolt(history, t);
   const double step_s = ToSeconds(t - *last_);
@@ -97,13 +97,13 @@ void FeatureTracker::Track(const EventHistory& history, TimeNs t) {
   features_.erase(features_.begin() + static_cast<std::ptrdiff_t>(kept), features_.end());
 }
 
-void FeatureTracker::AlignAll(const EventHistory& history, TimeNs t, const Jolt& jolt) {
+void FeatureTracker::AlignAll(const events::EventHistory& history, TimeNs t, const Jolt& jolt) {
   if (alignments_.size() < features_.size()) alignments_.resize(features_.size());
   pool_->ForEach(
       features_.size(), [&](std::size_t i) { Align(history, t, jolt, features_[i], &alignments_[i]); }, 4);
 }
 
-void FeatureTracker::FollowJolt(const EventHistory& history, TimeNs t) {
+void FeatureTracker::FollowJolt(const events::EventHistory& history, TimeNs t) {
   Jolt jolt;
   for (int i = 0; i < kJoltPasses; ++i) {
     const Jolt further = FindJolt(UnexpectedMotions());
@@ -161,8 +161,8 @@ PatchMotion FeatureTracker::Predict(const TrackedFeature& feature, double step_s
   return motion;
 }
 
-void FeatureTracker::Align(const EventHistory& history, TimeNs t, const Jolt& jolt, const TrackedFeature& feature,
-                           FeatureAlignment* alignment) const {
+void FeatureTracker::Align(const events::EventHistory& history, TimeNs t, const Jolt& jolt,
+                           const TrackedFeature& feature, FeatureAlignment* alignment) const {
   FeatureAlignment& a = *alignment;
   a.state = FeatureAlignment::State::kLost;
   a.start = Predict(feature, ToSeconds(t - *last_), &a.position);
@@ -309,7 +309,7 @@ bool FeatureTracker::Fit(const TrackedFeature& feature, bool coarse_first, Featu
          scale > 1.0 / options_.largest_scale;
 }
 
-void FeatureTracker::UpdateTemplate(const LocalEvents& events, const PatchMotion& motion,
+void FeatureTracker::UpdateTemplate(const events::LocalEvents& events, const PatchMotion& motion,
                                     TrackedFeature* feature) const {
   // A running mean at first, then one that forgets: the patch changes as it comes nearer. A window that mostly repeats
   // the last one has little news, and all that it would add is its own error of alignment.
@@ -338,4 +338,4 @@ void FeatureTracker::UpdateTemplate(const LocalEvents& events, const PatchMotion
   feature->own_pull.reset();
 }
 
-}  // namespace evo
+}  // namespace evo::tracking

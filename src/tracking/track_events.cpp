@@ -5,17 +5,19 @@
 #include <opencv2/core/utility.hpp>
 
 #include "evo/core/error.hpp"
-#include "evo/tracking/tracker.hpp"
+#include "evo/core/format.hpp"
+#include "tracking/tracker.hpp"
+#include "tracking/smoothing/track_buffer.hpp"
 
-namespace evo {
+namespace evo::tracking {
 
-TrackingResult TrackEvents(EventReader* reader, const Camera& camera, const TrackerOptions& options, ThreadPool* pool,
-                           const TrackSink& sink, const std::function<void(double)>& progress,
+TrackingResult TrackEvents(events::EventReader* reader, const geometry::Camera& camera, const TrackerOptions& options,
+                           ThreadPool* pool, const events::TrackSink& sink, const std::function<void(double)>& progress,
                            const std::function<void(const TrackingView&)>& observe) {
   // Its variants for newer processors round differently: the tracks would depend on the machine.
   cv::setUseOptimized(false);
   cv::setNumThreads(1);  // the pool's threads are all that were asked for
-  EventHistory history(camera.width(), camera.height());
+  events::EventHistory history(camera.width(), camera.height());
   const std::unique_ptr<Tracker> tracker = MakeTracker(camera, options, pool);
   TrackBuffer buffer(camera, options, pool, sink);
   TrackingResult result;
@@ -32,7 +34,7 @@ TrackingResult TrackEvents(EventReader* reader, const Camera& camera, const Trac
   };
 
   // One block is decoded while the one before it is tracked.
-  EventColumns block, next;
+  events::EventColumns block, next;
   const auto read = [&] { return reader->Next(&next); };
   std::future<bool> pending = std::async(std::launch::async, read);
   std::optional<TimeNs> frame;
@@ -71,4 +73,11 @@ TrackingResult TrackEvents(EventReader* reader, const Camera& camera, const Trac
   return result;
 }
 
-}  // namespace evo
+std::string DescribePositions(const TrackerOptions& options) {
+  if (options.method != "klt") return "pixels of the raw sensor, each at the very instant of its stamp";
+  return Format(
+      "pixels of the raw sensor, in the image of the newest %d events, so late by half the time that these take",
+      options.klt.events);
+}
+
+}  // namespace evo::tracking

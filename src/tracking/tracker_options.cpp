@@ -1,6 +1,6 @@
 #include "evo/tracking/tracker_options.hpp"
 
-namespace evo {
+namespace evo::tracking {
 
 void Register(Parameters& parameters, TrackerOptions& o) {
   parameters.Add("tracker.method", &o.method, {"em", "klt"},
@@ -71,4 +71,4 @@ void Register(Parameters& parameters, TrackerOptions& o) {
                  "lost if tracking back ends farther off (px)");
 }
 
-}  // namespace evo
+}  // namespace evo::tracking

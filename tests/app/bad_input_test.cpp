@@ -5,7 +5,7 @@
 #include "app/evo_run.hpp"
 #include "io/hdf5_support.hpp"
 
-namespace evo {
+namespace evo::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -68,7 +68,7 @@ class BadInputTest : public EvoRunTest {
       for (const double cell : {static_cast<double>(i % 346), 7.0, 1504650000.0 + 1e-5 * i, 1.0}) rows.push_back(cell);
     }
     rows[4 * 500 + column] = value;
-    StoreEvents(folder / name, rows);
+    io::StoreEvents(folder / name, rows);
     return folder / name;
   }
 
@@ -281,4 +281,4 @@ TEST_F(BadInputTest, FullDisk) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::app

@@ -1,7 +1,7 @@
 // scripts/bench_odometry.sh, on a slider that is fast and short, and what it measures with: configs/paper.yaml.
 #include "app/bench_script.hpp"
 
-namespace evo {
+namespace evo::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -159,4 +159,4 @@ TEST_F(PaperConfigurationTest, FollowsTheBundledStreet) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::app

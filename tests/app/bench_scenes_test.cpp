@@ -4,7 +4,7 @@
 
 #include "app/bench_script.hpp"
 
-namespace evo {
+namespace evo::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -76,4 +76,4 @@ TEST_F(BenchScenesTest, OtherFoldersAreLeftAloneButNotOnesThatWereInterrupted) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::app

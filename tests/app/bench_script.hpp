@@ -9,7 +9,7 @@
 
 #include "app/evo_run.hpp"
 
-namespace evo {
+namespace evo::app {
 
 /// A script of scripts/ that simulates, runs and judges, on a slider that is fast and short.
 class BenchScriptTest : public EvoRunTest {
@@ -76,4 +76,4 @@ class BenchScriptTest : public EvoRunTest {
   std::string script_;
 };
 
-}  // namespace evo
+}  // namespace evo::app

@@ -1,7 +1,7 @@
 // scripts/bench_tracking.sh, on a slider that is fast and short.
 #include "app/bench_script.hpp"
 
-namespace evo {
+namespace evo::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -149,4 +149,4 @@ TEST_F(BenchTrackingTest, WrongWordsAreRefusedBeforeAnythingIsDone) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::app

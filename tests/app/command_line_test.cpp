@@ -4,7 +4,7 @@
 
 #include "app/evo_run.hpp"
 
-namespace evo {
+namespace evo::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -172,4 +172,4 @@ TEST_F(CommandLineTest, AnOutputFolderThatCannotBeIsRefusedBeforeWork) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::app

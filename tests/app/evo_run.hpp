@@ -11,7 +11,7 @@
 #include <iterator>
 #include <string>
 
-namespace evo {
+namespace evo::app {
 
 /// The program as users call it, and a folder of its own for each test, removed afterwards.
 class EvoRunTest : public ::testing::Test {
@@ -74,4 +74,4 @@ inline std::ptrdiff_t CountFiles(const std::filesystem::path& folder) {
   return std::count_if(begin(files), end(files), [](const auto& entry) { return entry.is_regular_file(); });
 }
 
-}  // namespace evo
+}  // namespace evo::app

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "app/evo_run.hpp"
-#include "evo/io/tracks.hpp"
+#include "evo/io/track_io.hpp"
 
-namespace evo {
+namespace evo::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -118,9 +118,10 @@ TEST_F(PipelineTest, OddTracksAreWithdrawnWithAllThatWasSeenOfThem) {
   const std::string alike = "track " + Blind() + "-q --set tracker.restore_shake=false";  // which all tracks share
   ASSERT_EQ(Run(alike + " --set tracker.odd_share=0" + To("all")), 0) << err;
   ASSERT_EQ(Run(alike + " --set tracker.odd_share=0.2" + To("kept")), 0) << err;
-  std::map<std::int64_t, Tracks> all, kept;
-  for (const auto& observation : ReadTracks(folder / "all" / "tracks.txt")) all[observation.id].push_back(observation);
-  for (const auto& observation : ReadTracks(folder / "kept" / "tracks.txt"))
+  std::map<std::int64_t, events::Tracks> all, kept;
+  for (const auto& observation : io::ReadTracks(folder / "all" / "tracks.txt"))
+    all[observation.id].push_back(observation);
+  for (const auto& observation : io::ReadTracks(folder / "kept" / "tracks.txt"))
     kept[observation.id].push_back(observation);
   std::size_t withdrawn = 0;
   for (const auto& [id, track] : all) {
@@ -324,4 +325,4 @@ TEST_F(PipelineTest, AnInterruptedRunLeavesNothingHalfWritten) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::app

@@ -1,7 +1,7 @@
 // evo-run report: what it writes and what it refuses.
 #include "app/evo_run.hpp"
 
-namespace evo {
+namespace evo::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -61,4 +61,4 @@ TEST_F(ReportCommandTest, MistakesHaveTheirCodes) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::app

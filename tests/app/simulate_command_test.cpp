@@ -6,16 +6,16 @@
 #include <vector>
 
 #include "app/evo_run.hpp"
+#include "evo/events/depth_map.hpp"
 #include "evo/io/calibration_io.hpp"
 #include "evo/io/checksum.hpp"
-#include "evo/io/depth_maps.hpp"
-#include "evo/io/tracks.hpp"
+#include "evo/io/track_io.hpp"
 #include "evo/io/trajectory_io.hpp"
 #include "evo/simulation/scene_options.hpp"
-#include "io/hdf5.hpp"
+#include "io/hdf5/hdf5.hpp"
 #include "simulation/render_scene.hpp"
 
-namespace evo {
+namespace evo::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -39,14 +39,14 @@ class SimulateCommandTest : public EvoRunTest {
   }
 
   /// What Small simulates.
-  SimulatedRun RunOf(const std::string& scene, const std::string& setting = "") const {
-    SceneOptions options;
+  simulation::SimulatedRun RunOf(const std::string& scene, const std::string& setting = "") const {
+    simulation::SceneOptions options;
     Parameters parameters;
     Register(parameters, options);
     parameters.LoadFile(SceneFile(scene + ".yaml"));
     if (!setting.empty()) parameters.Set(setting);
     options.calibration = Path("camera.yaml");
-    return MakeRun(options);
+    return simulation::MakeRun(options);
   }
 
   /// Must be refused with this exit code and a line that holds `part`, and leave no file in result.
@@ -61,7 +61,7 @@ class SimulateCommandTest : public EvoRunTest {
     std::map<std::string, std::string> sums;
     for (const auto& entry : fs::recursive_directory_iterator(folder / result)) {
       const std::string name = fs::relative(entry.path(), folder / result).string();
-      if (entry.is_regular_file() && name != "manifest.json") sums[name] = Sha256(entry.path());
+      if (entry.is_regular_file() && name != "manifest.json") sums[name] = io::Sha256(entry.path());
     }
     return sums;
   }
@@ -84,9 +84,9 @@ TEST_F(SimulateCommandTest, MvsecSequencesHoldWhatThePublishedOnesDo) {
   EXPECT_NE(out.find(" negative for each positive one"), std::string::npos) << out;
   EXPECT_NE(out.find("results    " + Path("a") + "\n"), std::string::npos) << out;
   EXPECT_EQ(CountFiles(folder / "a"), 4);
-  const hdf5::File data(folder / "a" / "slider_data.hdf5");
-  const hdf5::File truth(folder / "a" / "slider_gt.hdf5");
-  const auto shape = [](const hdf5::File& file, const std::string& name) {
+  const io::hdf5::File data(folder / "a" / "slider_data.hdf5");
+  const io::hdf5::File truth(folder / "a" / "slider_gt.hdf5");
+  const auto shape = [](const io::hdf5::File& file, const std::string& name) {
     return file.Open("davis/left/" + name).shape();
   };
   using Shape = std::vector<hsize_t>;
@@ -98,27 +98,27 @@ TEST_F(SimulateCommandTest, MvsecSequencesHoldWhatThePublishedOnesDo) {
   for (const char* maps : {"depth_image_raw", "depth_image_rect"}) EXPECT_EQ(shape(truth, maps), (Shape{3, 90, 120}));
   EXPECT_EQ(shape(truth, "flow_dist"), (Shape{2, 2, 90, 120}));
   EXPECT_EQ(shape(truth, "flow_dist_ts"), (Shape{2}));
-  EXPECT_EQ(ReadCalibration(folder / "a" / "camchain-imucam-slider.yaml").width, 120);
+  EXPECT_EQ(io::ReadCalibration(folder / "a" / "camchain-imucam-slider.yaml").width, 120);
 }
 
 /// Depth and flow of the rectified image against single rays and the projection of the points that they meet.
 TEST_F(SimulateCommandTest, RectifiedMapsAreThoseOfAnIdealLens) {
   const std::string handheld = "--set motion.handheld.frequency_hz=3 ";
   ASSERT_EQ(Run(Small("handheld_boxes", "a") + "--duration 0.12 --set output.flow=true -q " + handheld), 0) << err;
-  const SimulatedRun run = RunOf("handheld_boxes", "motion.handheld.frequency_hz=3");
-  const Camera ideal(Rectified(run.camera.calibration()));
-  const hdf5::File truth(folder / "a" / "handheld_boxes_gt.hdf5");
+  const simulation::SimulatedRun run = RunOf("handheld_boxes", "motion.handheld.frequency_hz=3");
+  const geometry::Camera ideal(geometry::Rectified(run.camera.calibration()));
+  const io::hdf5::File truth(folder / "a" / "handheld_boxes_gt.hdf5");
   std::vector<double> depth(90 * 120);
   std::vector<double> flow(2 * 90 * 120);
   truth.Open("davis/left/depth_image_rect").Read(1, 1, depth.data());
   truth.Open("davis/left/flow_dist").Read(1, 1, flow.data());
-  const SE3 T_world_now = run.motion(50'000'000);
-  const SE3 T_next_now = run.motion(100'000'000).Inverse() * T_world_now;
+  const geometry::SE3 T_world_now = run.motion(50'000'000);
+  const geometry::SE3 T_next_now = run.motion(100'000'000).Inverse() * T_world_now;
   double longest = 0.0;
   for (int i = 0; i < 90 * 120; i += 37) {
     const Eigen::Vector2d pixel(i % 120, i / 120);
     const Eigen::Vector2d ray((pixel.x() - 60.0) / 90.0, (pixel.y() - 45.0) / 90.0);
-    const Hit hit = CastRay(run.scene, ray, 50'000'000, T_world_now);
+    const simulation::Hit hit = CastRay(run.scene, ray, 50'000'000, T_world_now);
     if (hit.margin < 1e-4) continue;
     const Eigen::Vector2d moved = ideal.Project(T_next_now * (hit.depth * ray.homogeneous())) - pixel;
     const auto place = static_cast<std::size_t>(i);
@@ -154,16 +154,16 @@ TEST_F(SimulateCommandTest, SameTextForAnyNumberOfThreads) {
 
 /// Where points of the scene truly are, found by one ray at a time in double precision: tracks that begin on places
 /// that lie on one surface with what is around them, and end where another surface hides them.
-Tracks FollowPoints(const SimulatedRun& run, int count, TimeNs end) {
+events::Tracks FollowPoints(const simulation::SimulatedRun& run, int count, TimeNs end) {
   constexpr TimeNs kStep = 20'500'000;
   Random random(3);
   const auto surface_at = [&](const Eigen::Vector2d& pixel, TimeNs t, double* depth) {
     const auto ray = run.camera.Contains(pixel) ? run.camera.Undistort(pixel) : std::nullopt;
-    const Hit hit = ray ? CastRay(run.scene, *ray, t, run.motion(t)) : Hit();
+    const simulation::Hit hit = ray ? CastRay(run.scene, *ray, t, run.motion(t)) : simulation::Hit();
     if (depth) *depth = hit.depth;
     return hit.surface;
   };
-  Tracks tracks;
+  events::Tracks tracks;
   for (int id = 0; id < count; ++id) {
     const TimeNs start = random.Index(10) * kStep;
     const Eigen::Vector2d first(random.Uniform(5.0, run.camera.width() - 6.0),
@@ -189,7 +189,7 @@ Tracks FollowPoints(const SimulatedRun& run, int count, TimeNs end) {
 TEST_F(SimulateCommandTest, PointsOfTheSceneAreTracksWithoutError) {
   ASSERT_EQ(Run(Small("handheld_boxes", "room") + "--duration 1 --set output.start_s=0 --set simulation.samples=1"), 0)
       << err;
-  WriteTracks(folder / "tracks.txt", FollowPoints(RunOf("handheld_boxes"), 100, FromSeconds(0.99)));
+  io::WriteTracks(folder / "tracks.txt", FollowPoints(RunOf("handheld_boxes"), 100, FromSeconds(0.99)));
   ASSERT_EQ(Run("evaluate --no-plots --tracks " + Quote(folder / "tracks.txt") + " --ground-truth " +
                 Quote(folder / "room" / "handheld_boxes_gt.hdf5") + " --calibration " + Quote(folder / "camera.yaml") +
                 " --out " + Quote(folder / "quality")),
@@ -344,4 +344,4 @@ TEST_F(SimulateFailureTest, BadMotionFilesAreRefused) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::app

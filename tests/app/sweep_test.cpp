@@ -6,7 +6,7 @@
 #include "app/evo_run.hpp"
 #include "evo/io/calibration_io.hpp"
 
-namespace evo {
+namespace evo::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -194,7 +194,7 @@ TEST_F(SweepTest, ConfigurationsAreAcceptedAndCalibrationsRead) {
     ++files;
   }
   for (const auto& entry : fs::directory_iterator(configs / "calibrations")) {
-    const Calibration calibration = ReadCalibration(entry.path());
+    const geometry::Calibration calibration = io::ReadCalibration(entry.path());
     EXPECT_EQ(calibration.width, 346) << entry.path();
     EXPECT_EQ(calibration.height, 260) << entry.path();
     ++files;
@@ -203,4 +203,4 @@ TEST_F(SweepTest, ConfigurationsAreAcceptedAndCalibrationsRead) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::app

@@ -5,9 +5,10 @@
 
 #include "app/evo_run.hpp"
 #include "evaluation/track_scene.hpp"
+#include "evo/io/track_io.hpp"
 #include "evo/io/trajectory_io.hpp"
 
-namespace evo {
+namespace evo::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -63,19 +64,19 @@ class TrackEvaluationTest : public EvoRunTest {
 
   /// A drive along a wall with tracks that are right but for `offset_px` from their second observation on.
   std::string SceneArguments(double offset_px, bool with_depth = true) const {
-    const testing::TrackScene scene;
+    const evaluation::testing::TrackScene scene;
     if (with_depth) {
       scene.WriteGroundTruth(folder / "wall_gt.hdf5");
     } else {
-      WriteMvsecGroundTruth(folder / "wall_gt.hdf5", scene.Poses(), scene.Poses());
+      io::WriteMvsecGroundTruth(folder / "wall_gt.hdf5", scene.Poses(), scene.Poses());
     }
-    Tracks all;
+    events::Tracks all;
     for (int id = 0; id < 12; ++id) {
-      Tracks track = scene.Follow(id, {60.0 + 10.0 * id, 20.0 + 9.0 * id}, 0.013 * id, 1.0);
+      events::Tracks track = scene.Follow(id, {60.0 + 10.0 * id, 20.0 + 9.0 * id}, 0.013 * id, 1.0);
       for (std::size_t i = 1; i < track.size(); ++i) track[i].y += offset_px;
       all.insert(all.end(), track.begin(), track.end());
     }
-    WriteTracks(folder / "tracks.txt", all);
+    io::WriteTracks(folder / "tracks.txt", all);
     Write("camchain.yaml", kPlainCalibration);
     return "evaluate --tracks " + Quote(folder / "tracks.txt") + " --ground-truth " + Quote(folder / "wall_gt.hdf5") +
            " --calibration " + Quote(folder / "camchain.yaml");
@@ -168,7 +169,7 @@ TEST_F(TrackEvaluationTest, OnlyTheIntervalIsJudged) {
 
 TEST_F(TrackEvaluationTest, TrajectoryAndTracksTogetherLeaveOneManifest) {
   const std::string arguments = SceneArguments(0.0);
-  WriteTum(folder / "estimate.txt", testing::TrackScene().Poses());
+  io::WriteTum(folder / "estimate.txt", evaluation::testing::TrackScene().Poses());
   ASSERT_EQ(Run(arguments + " --align none --estimate " + Quote(folder / "estimate.txt") + To("both")), 0) << err;
   for (const char* name : {"summary.csv", "errors.csv", "track_quality.csv", "track_errors.csv", "lifetime.csv"}) {
     EXPECT_TRUE(fs::exists(folder / "both" / name)) << name;
@@ -184,7 +185,7 @@ TEST_F(TrackEvaluationTest, TrajectoryAndTracksTogetherLeaveOneManifest) {
 
 TEST_F(TrackEvaluationTest, TracksThatCannotBeJudgedLeaveNothingBehind) {
   const std::string arguments = SceneArguments(0.0);
-  WriteTum(folder / "estimate.txt", testing::TrackScene().Poses());
+  io::WriteTum(folder / "estimate.txt", evaluation::testing::TrackScene().Poses());
   Write("tracks.txt", "1 0 5 5\n1 0.1 5 nan\n");
   EXPECT_EQ(Refusal(arguments + " --align none --estimate " + Quote(folder / "estimate.txt") + To("both")), 4);
   EXPECT_FALSE(fs::exists(folder / "both"));
@@ -245,4 +246,4 @@ TEST_F(TrackEvaluationTest, TracksAndTruthThatDoNotBelongTogetherAreRefused) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::app

@@ -4,48 +4,48 @@
 
 #include <random>
 
+#include "evaluation/reference.hpp"
 #include "evo/core/error.hpp"
 #include "evo/evaluation/evaluation.hpp"
-#include "reference.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 namespace {
 
 /// A pose a tenth of a second along a smooth curve in space.
-Trajectory Curve(int poses) {
-  Trajectory trajectory;
+geometry::Trajectory Curve(int poses) {
+  geometry::Trajectory trajectory;
   for (int i = 0; i < poses; ++i) {
     const double s = 0.1 * i;
-    trajectory.push_back({FromSeconds(s), SE3(so3::Exp({0.1 * s, 0.3 * std::sin(s), -0.05 * s}),
-                                              {3.0 * s, std::sin(0.7 * s), 0.2 * s * s})});
+    trajectory.push_back({FromSeconds(s), geometry::SE3(geometry::so3::Exp({0.1 * s, 0.3 * std::sin(s), -0.05 * s}),
+                                                        {3.0 * s, std::sin(0.7 * s), 0.2 * s * s})});
   }
   return trajectory;
 }
 
-Trajectory Noisy(Trajectory trajectory, unsigned seed) {
+geometry::Trajectory Noisy(geometry::Trajectory trajectory, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0.0, 0.1);
   for (auto& pose : trajectory) {
     const Eigen::Vector3d shift(noise(random), noise(random), noise(random));
-    pose.T_world_cam = SE3(pose.T_world_cam.rotation(), pose.T_world_cam.translation() + shift);
+    pose.T_world_cam = geometry::SE3(pose.T_world_cam.rotation(), pose.T_world_cam.translation() + shift);
   }
   return trajectory;
 }
 
-Trajectory Moved(Trajectory trajectory, const Similarity& similarity) {
+geometry::Trajectory Moved(geometry::Trajectory trajectory, const Similarity& similarity) {
   for (auto& pose : trajectory) pose.T_world_cam = similarity * pose.T_world_cam;
   return trajectory;
 }
 
-double Rmse(const Trajectory& truth, const Trajectory& estimate, const char* alignment) {
+double Rmse(const geometry::Trajectory& truth, const geometry::Trajectory& estimate, const char* alignment) {
   return Evaluate(truth, estimate, std::vector{ParseAlignment(alignment)}, {}, {})
       .alignments.front()
       .Ape(PoseRelation::kTranslation)
       .rmse;
 }
 
-const Similarity kRigid{1.0, SE3(so3::Exp({0.4, -1.2, 2.0}), {100.0, -20.0, 3.0})};
-const Similarity kSimilar{0.3, SE3(so3::Exp({0.4, -1.2, 2.0}), {100.0, -20.0, 3.0})};
+const Similarity kRigid{1.0, geometry::SE3(geometry::so3::Exp({0.4, -1.2, 2.0}), {100.0, -20.0, 3.0})};
+const Similarity kSimilar{0.3, geometry::SE3(geometry::so3::Exp({0.4, -1.2, 2.0}), {100.0, -20.0, 3.0})};
 
 TEST(Alignment, FindsTheMotionThatWasApplied) {
   const auto truth = Curve(80);
@@ -71,7 +71,7 @@ TEST(Alignment, ErrorsDoNotDependOnTheEstimatesWorldFrame) {
 
 TEST(Alignment, MoreFreedomNeverFitsWorse) {
   const auto truth = Curve(80);
-  const auto estimate = Moved(Noisy(truth, 2), {0.95, SE3(so3::Exp({0, 0.02, 0}), {0.5, 0, 0})});
+  const auto estimate = Moved(Noisy(truth, 2), {0.95, geometry::SE3(geometry::so3::Exp({0, 0.02, 0}), {0.5, 0, 0})});
   const double sim3 = Rmse(truth, estimate, "sim3");
   EXPECT_LE(sim3, Rmse(truth, estimate, "se3"));
   EXPECT_LE(Rmse(truth, estimate, "se3"), Rmse(truth, estimate, "origin"));
@@ -94,7 +94,7 @@ TEST(Alignment, ReflectionIsNeverUsed) {
   auto mirrored = truth;
   for (auto& pose : mirrored) {
     const Eigen::Vector3d p = pose.T_world_cam.translation();
-    pose.T_world_cam = SE3(pose.T_world_cam.rotation(), {p.x(), -p.y(), p.z()});
+    pose.T_world_cam = geometry::SE3(pose.T_world_cam.rotation(), {p.x(), -p.y(), p.z()});
   }
   const auto pairs = Associate(truth, mirrored, {});
   EXPECT_NEAR(
@@ -103,7 +103,7 @@ TEST(Alignment, ReflectionIsNeverUsed) {
   EXPECT_GT(Rmse(truth, mirrored, "se3"), 0.1);
 }
 
-ErrorKind Refusal(const Trajectory& truth, const Trajectory& estimate, const char* alignment) {
+ErrorKind Refusal(const geometry::Trajectory& truth, const geometry::Trajectory& estimate, const char* alignment) {
   try {
     Rmse(truth, estimate, alignment);
   } catch (const Error& error) {
@@ -125,7 +125,7 @@ TEST(Alignment, RefusesWhatThePosesDoNotDetermine) {
   EXPECT_EQ(Refusal(still, still, "origin-scale"), ErrorKind::kDegenerateAlignment);
   const auto line = ReadReferenceTrajectory("line.txt");
   EXPECT_NEAR(Rmse(line, line, "origin-scale"), 0.0, 1e-12);
-  EXPECT_EQ(Refusal(line, Moved(line, {-1.0, SE3()}), "origin-scale"), ErrorKind::kDegenerateAlignment);
+  EXPECT_EQ(Refusal(line, Moved(line, {-1.0, geometry::SE3()}), "origin-scale"), ErrorKind::kDegenerateAlignment);
 }
 
 TEST(Alignment, NoOverlapIsNothingToDo) {
@@ -146,11 +146,11 @@ TEST(Alignment, ScaleIsThatOfSim3AboutTheOrigin) {
 TEST(Alignment, PosYawFindsPositionAndHeadingOnly) {
   const auto truth = Curve(80);
   const Eigen::Vector3d up = -Eigen::Vector3d::UnitY();
-  const Similarity turned{1.0, SE3(so3::Exp(-2.5 * up), {4.0, 5.0, -6.0})};
-  const auto tilted = Moved(truth, {1.0, SE3(so3::Exp({0.2, 0.0, 0.0}), Eigen::Vector3d::Zero())});
+  const Similarity turned{1.0, geometry::SE3(geometry::so3::Exp(-2.5 * up), {4.0, 5.0, -6.0})};
+  const auto tilted = Moved(truth, {1.0, geometry::SE3(geometry::so3::Exp({0.2, 0.0, 0.0}), Eigen::Vector3d::Zero())});
   for (const char* name : {"posyaw", "posyaw:1", "posyaw:7", "posyaw:2.5s"}) {
     const auto found = Align(Associate(truth, Moved(truth, turned), {}), ParseAlignment(name), up);
-    const SE3 rest = found.T_truth_estimate * turned.T_truth_estimate;
+    const geometry::SE3 rest = found.T_truth_estimate * turned.T_truth_estimate;
     EXPECT_LT((rest.Matrix() - Eigen::Matrix4d::Identity()).norm(), 1e-9) << name;
     const auto level = Align(Associate(truth, tilted, {}), ParseAlignment(name), up);
     EXPECT_LT((level.T_truth_estimate.rotation() * up - up).norm(), 1e-12) << name;
@@ -161,17 +161,17 @@ TEST(Alignment, PosYawIsTheBestOfAllHeadings) {
   const auto truth = Curve(80);
   const auto pairs = Associate(truth, Noisy(Moved(truth, kRigid), 5), {});
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-  const auto cost = [&](const SE3& T) {
+  const auto cost = [&](const geometry::SE3& T) {
     double sum = 0.0;
     for (const auto& pair : pairs) {
       sum += (T * pair.T_world_cam_estimate.translation() - pair.T_world_cam_truth.translation()).squaredNorm();
     }
     return sum;
   };
-  const SE3 best = Align(pairs, ParseAlignment("posyaw"), up).T_truth_estimate;
+  const geometry::SE3 best = Align(pairs, ParseAlignment("posyaw"), up).T_truth_estimate;
   for (const double step : {-0.01, 0.01}) {
-    EXPECT_LT(cost(best), cost(SE3(so3::Exp(step * up), Eigen::Vector3d::Zero()) * best));
-    EXPECT_LT(cost(best), cost(SE3(Eigen::Quaterniond::Identity(), {step, step, step}) * best));
+    EXPECT_LT(cost(best), cost(geometry::SE3(geometry::so3::Exp(step * up), Eigen::Vector3d::Zero()) * best));
+    EXPECT_LT(cost(best), cost(geometry::SE3(Eigen::Quaterniond::Identity(), {step, step, step}) * best));
   }
 }
 
@@ -193,8 +193,9 @@ TEST(Alignment, SpansCountPosesOrSeconds) {
 }
 
 TEST(Alignment, PosYawNeedsMotionAcross) {
-  Trajectory lift;
-  for (int i = 0; i < 20; ++i) lift.push_back({i * kNsPerSecond, SE3(Eigen::Quaterniond::Identity(), {0, 0, 0.5 * i})});
+  geometry::Trajectory lift;
+  for (int i = 0; i < 20; ++i)
+    lift.push_back({i * kNsPerSecond, geometry::SE3(Eigen::Quaterniond::Identity(), {0, 0, 0.5 * i})});
   const auto pairs = Associate(lift, lift, {});
   EXPECT_THROW(Align(pairs, ParseAlignment("posyaw"), Eigen::Vector3d::UnitZ()), Error);
   EXPECT_EQ(Align(pairs, ParseAlignment("posyaw:1"), Eigen::Vector3d::UnitZ()).scale, 1.0);
@@ -213,4 +214,4 @@ TEST(Alignment, ReadsNames) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::evaluation

@@ -11,15 +11,15 @@
 
 #include "evo/core/error.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 namespace {
 
 constexpr TimeNs kMs = 1'000'000;
 
 /// One pose a stamp (ms), moving 1 m/s along x.
-Trajectory AtMilliseconds(const std::vector<int>& stamps) {
-  Trajectory trajectory;
-  for (const int ms : stamps) trajectory.push_back({ms * kMs, SE3({1, 0, 0, 0}, {1e-3 * ms, 0, 0})});
+geometry::Trajectory AtMilliseconds(const std::vector<int>& stamps) {
+  geometry::Trajectory trajectory;
+  for (const int ms : stamps) trajectory.push_back({ms * kMs, geometry::SE3({1, 0, 0, 0}, {1e-3 * ms, 0, 0})});
   return trajectory;
 }
 
@@ -159,4 +159,4 @@ TEST(Association, EmptyTrajectoriesGiveNoPairs) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::evaluation

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-namespace evo {
+namespace evo::evaluation {
 namespace {
 
 constexpr double kPositionSigma = 0.03;
@@ -14,28 +14,28 @@ constexpr double kAngleSigma = 0.002;
 
 struct Noisy {
   std::vector<PosePair> pairs;
-  std::vector<StampedCovariance> covariances;
+  std::vector<geometry::StampedCovariance> covariances;
 };
 
 /// Errors as large as the covariances say, but for the first pose, which has none.
 Noisy MakeRun(int poses, double scale, std::uint32_t seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
-  const SE3 T_estimate_truth(so3::Exp({0.4, -1.0, 0.7}), {3.0, -2.0, 5.0});
-  Matrix6d covariance = Matrix6d::Zero();
+  const geometry::SE3 T_estimate_truth(geometry::so3::Exp({0.4, -1.0, 0.7}), {3.0, -2.0, 5.0});
+  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
   covariance.diagonal() << Eigen::Vector3d::Constant(kPositionSigma * kPositionSigma),
       Eigen::Vector3d::Constant(kAngleSigma * kAngleSigma);
   Noisy run;
   for (int i = 0; i < poses; ++i) {
     const TimeNs t = i * TimeNs{20'000'000};
-    const SE3 truth(so3::Exp({0.0, 0.01 * i, 0.0}), {0.2 * i, std::sin(0.1 * i), 0.05 * i});
-    const SE3 turned = T_estimate_truth * truth;
+    const geometry::SE3 truth(geometry::so3::Exp({0.0, 0.01 * i, 0.0}), {0.2 * i, std::sin(0.1 * i), 0.05 * i});
+    const geometry::SE3 turned = T_estimate_truth * truth;
     const double size = i == 0 ? 0.0 : 1.0;
     const auto draw = [&](double sigma) -> Eigen::Vector3d {
       return size * sigma * Eigen::Vector3d(normal(random), normal(random), normal(random));
     };
-    const SE3 estimate(so3::Exp(draw(kAngleSigma)) * turned.rotation(),
-                       scale * turned.translation() + draw(kPositionSigma));
+    const geometry::SE3 estimate(geometry::so3::Exp(draw(kAngleSigma)) * turned.rotation(),
+                                 scale * turned.translation() + draw(kPositionSigma));
     run.pairs.push_back({t, t, estimate, truth});
     run.covariances.push_back({t, size * covariance});
   }
@@ -82,7 +82,7 @@ TEST(Consistency, ARunThatWasStartedAnewIsJudgedPieceByPiece) {
 
 TEST(Consistency, PosesWithoutACovarianceDoNotCount) {
   Noisy run = MakeRun(100, 1.0, 4);
-  std::erase_if(run.covariances, [](const StampedCovariance& row) { return row.t % 40'000'000 != 0; });
+  std::erase_if(run.covariances, [](const geometry::StampedCovariance& row) { return row.t % 40'000'000 != 0; });
   EXPECT_EQ(MeasureConsistency(run.pairs, run.covariances, true).pose.count, 49);
   run.covariances.erase(run.covariances.begin());
   EXPECT_EQ(MeasureConsistency(run.pairs, run.covariances, true).pose.count, 0) << "relative to what?";
@@ -92,4 +92,4 @@ TEST(Consistency, PosesWithoutACovarianceDoNotCount) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::evaluation

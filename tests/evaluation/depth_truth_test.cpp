@@ -8,7 +8,7 @@
 #include "evo/evaluation/track_accuracy.hpp"
 #include "evo/evaluation/track_truth.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 namespace {
 
 using testing::TrackScene;
@@ -19,13 +19,15 @@ class DepthTruthTest : public ::testing::Test {
  protected:
   void TearDown() override { std::filesystem::remove(path); }
 
-  std::vector<TrueTrack> Find(const TrackScene& scene, const Tracks& tracks, const TrackTruthOptions& options = {}) {
+  std::vector<TrueTrack> Find(const TrackScene& scene, const events::Tracks& tracks,
+                              const TrackTruthOptions& options = {}) {
     scene.WriteGroundTruth(path);
-    return TruthFromDepth(GroupById(tracks), scene.Poses(), scene.camera, DepthMapReader(path), kNsPerSecond, options);
+    return TruthFromDepth(GroupById(tracks), scene.Poses(), scene.camera, io::DepthMapReader(path), kNsPerSecond,
+                          options);
   }
 
   /// The largest distance from the truth; all positions must be known.
-  static double LargestError(const Tracks& track, const TrueTrack& truth) {
+  static double LargestError(const events::Tracks& track, const TrueTrack& truth) {
     double largest = 0.0;
     for (std::size_t i = 0; i < track.size(); ++i) {
       EXPECT_TRUE(truth.positions[i]) << i;
@@ -48,7 +50,7 @@ TEST_F(DepthTruthTest, PerfectTrackOnATiltedPlaneIsTheTruthWhereverItBegins) {
   scene.turning = {0.2, -0.5, 1.0};
   scene.seconds = 0.7;
   for (const double from : {0.0, 0.111, 0.324, 0.338}) {  // on a map, after one, between two
-    const Tracks track = scene.Follow(3, {80.3, 60.8}, from, from + 0.2);
+    const events::Tracks track = scene.Follow(3, {80.3, 60.8}, from, from + 0.2);
     const auto truth = Find(scene, track);
     ASSERT_EQ(truth.size(), 1u);
     EXPECT_EQ(truth[0].verdict, TrackVerdict::kJudged);
@@ -63,22 +65,22 @@ TEST_F(DepthTruthTest, FollowsTheLensOfTheRawImage) {
   scene.velocity = {0.3, 0.0, 3.0};
   scene.seconds = 0.6;
   for (const Eigen::Vector2d& pixel : {Eigen::Vector2d(40.2, 30.7), {300.5, 220.1}, {170.0, 128.0}}) {
-    const Tracks track = scene.Follow(1, pixel, 0.03, 0.2);
+    const events::Tracks track = scene.Follow(1, pixel, 0.03, 0.2);
     EXPECT_LT(LargestError(track, Find(scene, track)[0]), 5e-3);  // inverse depth is not linear in distorted pixels
   }
 }
 
 TEST_F(DepthTruthTest, ATrackThatDriftsDoesNotMoveTheTruth) {
   const TrackScene scene;
-  const Tracks perfect = scene.Follow(1, {150, 75}, 0.2, 1.0);
-  Tracks drifting = perfect;
+  const events::Tracks perfect = scene.Follow(1, {150, 75}, 0.2, 1.0);
+  events::Tracks drifting = perfect;
   for (std::size_t i = 0; i < drifting.size(); ++i) drifting[i].x += 0.1 * static_cast<double>(i);
   EXPECT_LT(LargestError(perfect, Find(scene, drifting)[0]), kFloatPx);
 }
 
 TEST_F(DepthTruthTest, VisibleUntilThePointLeavesTheImage) {
   const TrackScene scene;  // 10 px/s to the left
-  const Tracks track = scene.Follow(1, {12.5, 75}, 0.02, 1.5);
+  const events::Tracks track = scene.Follow(1, {12.5, 75}, 0.02, 1.5);
   const auto truth = Find(scene, track)[0];
   ASSERT_TRUE(truth.visible_until);
   EXPECT_NEAR(ToSeconds(*truth.visible_until - testing::kSceneStart), 0.02 + 1.25, 1e-5);
@@ -94,7 +96,7 @@ TEST_F(DepthTruthTest, VisibleUntilSomethingHidesIt) {
   TrackScene scene;
   scene.walls.push_back({Eigen::Vector3d(0, 0, 0.2), 1.0, 9.0});  // 5 m ahead, from x = 1 m on
   // The point is at x = 1 m on the far wall: hidden once the camera has come to 1 m, after 1 s.
-  const Tracks track = scene.Follow(1, {110, 75}, 0.0, 2.0);
+  const events::Tracks track = scene.Follow(1, {110, 75}, 0.0, 2.0);
   const auto truth = Find(scene, track)[0];
   ASSERT_TRUE(truth.visible_until);
   const double until = ToSeconds(*truth.visible_until - testing::kSceneStart);
@@ -110,7 +112,7 @@ TEST_F(DepthTruthTest, ATrackBesideAnEdgeMayBeOnEitherSurface) {
   scene.walls.push_back({Eigen::Vector3d(0, 0, 0.2), 1.05, 9.0});  // 5 m ahead, seen from x = 121 on
   TrackScene near;
   near.walls = {{Eigen::Vector3d(0, 0, 0.2)}};
-  const Tracks with_wall = near.Follow(1, {119, 75}, 0.0, 0.8);
+  const events::Tracks with_wall = near.Follow(1, {119, 75}, 0.0, 0.8);
   const auto truth = Find(scene, with_wall);
   ASSERT_EQ(truth[0].verdict, TrackVerdict::kJudged);
   ASSERT_EQ(truth[0].beside.size(), 1u);
@@ -132,9 +134,9 @@ TEST_F(DepthTruthTest, ATrackBesideAnEdgeMayBeOnEitherSurface) {
 TEST_F(DepthTruthTest, WhatMovesIsNotJudged) {
   TrackScene scene;
   scene.walls.push_back({Eigen::Vector3d(0, 0, 0.2), 1.05, 9.0, true});
-  Tracks tracks;
+  events::Tracks tracks;
   for (const auto& [id, x] : {std::pair{1, 140.0}, {2, 119.0}, {3, 110.0}}) {  // on it, beside it, away from it
-    const Tracks track = scene.Follow(id, {x, 75.0}, 0.0, 0.3);
+    const events::Tracks track = scene.Follow(id, {x, 75.0}, 0.0, 0.3);
     tracks.insert(tracks.end(), track.begin(), track.end());
   }
   const auto truth = Find(scene, tracks);
@@ -146,7 +148,7 @@ TEST_F(DepthTruthTest, WhatMovesIsNotJudged) {
 TEST_F(DepthTruthTest, NoDepthNoJudgement) {
   TrackScene scene;
   scene.walls = {{Eigen::Vector3d(0, 0, 0.1), -2.0, 1e9}, {Eigen::Vector3d(0, 0, 0.2), 1.0, 9.0}};
-  Tracks tracks;
+  events::Tracks tracks;
   const auto add = [&](std::int64_t id, double x) {
     for (int i = 0; i < 5; ++i) tracks.push_back({id, scene.Stamp(0.01 * i), x, 75.0});
   };
@@ -164,35 +166,36 @@ TEST_F(DepthTruthTest, NoDepthNoJudgement) {
 
 TEST_F(DepthTruthTest, OutsideTheTimeOfPosesAndMapsThereIsNoTruth) {
   const TrackScene scene;
-  Tracks tracks{{1, testing::kSceneStart - kNsPerSecond, 90, 75}, {1, testing::kSceneStart, 90, 75}};
+  events::Tracks tracks{{1, testing::kSceneStart - kNsPerSecond, 90, 75}, {1, testing::kSceneStart, 90, 75}};
   EXPECT_EQ(Find(scene, tracks)[0].verdict, TrackVerdict::kNoTruth);
   scene.WriteGroundTruth(path);
   TrackScene longer = scene;  // poses go on where the maps have ended
   longer.seconds = 4.0;
   tracks = longer.Follow(1, {90, 75}, 2.5, 3.0);
-  const auto truth = TruthFromDepth(GroupById(tracks), longer.Poses(), scene.camera, DepthMapReader(path), kNsPerSecond,
-                                    TrackTruthOptions());
+  const auto truth = TruthFromDepth(GroupById(tracks), longer.Poses(), scene.camera, io::DepthMapReader(path),
+                                    kNsPerSecond, TrackTruthOptions());
   EXPECT_EQ(truth[0].verdict, TrackVerdict::kNoDepth);
 }
 
 TEST_F(DepthTruthTest, RefusesMapsAndTracksOfAnotherCamera) {
   const TrackScene scene;
   scene.WriteGroundTruth(path);
-  const auto kind = [&](const Tracks& tracks, const Camera& camera) {
+  const auto kind = [&](const events::Tracks& tracks, const geometry::Camera& camera) {
     try {
-      TruthFromDepth(GroupById(tracks), scene.Poses(), camera, DepthMapReader(path), kNsPerSecond, TrackTruthOptions());
+      TruthFromDepth(GroupById(tracks), scene.Poses(), camera, io::DepthMapReader(path), kNsPerSecond,
+                     TrackTruthOptions());
     } catch (const Error& error) {
       return error.exit_code();
     }
     return 0;
   };
-  const Tracks track = scene.Follow(1, {90, 75}, 0.0, 0.5);
+  const events::Tracks track = scene.Follow(1, {90, 75}, 0.0, 0.5);
   EXPECT_EQ(kind(track, scene.camera), 0);
   EXPECT_EQ(kind(track, testing::MvsecCamera()), 4);
-  Tracks off = track;
+  events::Tracks off = track;
   for (auto& observation : off) observation.y += 200.0;
   EXPECT_EQ(kind(off, scene.camera), 4);
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::evaluation

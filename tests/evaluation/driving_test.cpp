@@ -10,21 +10,21 @@
 #include "evo/core/error.hpp"
 #include "evo/evaluation/evaluation.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 namespace {
 
 constexpr TimeNs kStep = 50'000'000;
 
 /// The MVSEC world: x right, y down, z forward; the camera looks along z.
-Trajectory Along(const std::vector<Eigen::Vector3d>& positions) {
-  Trajectory trajectory;
+geometry::Trajectory Along(const std::vector<Eigen::Vector3d>& positions) {
+  geometry::Trajectory trajectory;
   for (const auto& p : positions) {
-    trajectory.push_back({static_cast<TimeNs>(trajectory.size()) * kStep, SE3({1, 0, 0, 0}, p)});
+    trajectory.push_back({static_cast<TimeNs>(trajectory.size()) * kStep, geometry::SE3({1, 0, 0, 0}, p)});
   }
   return trajectory;
 }
 
-Trajectory StraightAhead(int poses, double step) {
+geometry::Trajectory StraightAhead(int poses, double step) {
   std::vector<Eigen::Vector3d> positions;
   for (int i = 0; i < poses; ++i) positions.push_back({0, 0, step * i});
   return Along(positions);
@@ -33,11 +33,11 @@ Trajectory StraightAhead(int poses, double step) {
 TEST(UpDirection, FollowsTheCameraInEveryWorld) {
   const auto camera_world = StraightAhead(3, 1.0);
   EXPECT_EQ(UpDirection("auto", camera_world), -Eigen::Vector3d::UnitY());
-  Trajectory surveyed;  // z up, the camera looks along x, tilted by 20 degrees
+  geometry::Trajectory surveyed;  // z up, the camera looks along x, tilted by 20 degrees
   Eigen::Matrix3d axes;
   axes << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-  const Eigen::Quaterniond tilt = so3::Exp({20.0 * std::numbers::pi / 180.0, 0, 0});
-  surveyed.push_back({0, SE3(Eigen::Quaterniond(axes) * tilt, Eigen::Vector3d::Zero())});
+  const Eigen::Quaterniond tilt = geometry::so3::Exp({20.0 * std::numbers::pi / 180.0, 0, 0});
+  surveyed.push_back({0, geometry::SE3(Eigen::Quaterniond(axes) * tilt, Eigen::Vector3d::Zero())});
   EXPECT_EQ(UpDirection("auto", surveyed), Eigen::Vector3d::UnitZ());
   EXPECT_EQ(UpDirection("-x", surveyed), -Eigen::Vector3d::UnitX());
   EXPECT_EQ(UpDirection("y", surveyed), Eigen::Vector3d::UnitY());
@@ -46,7 +46,7 @@ TEST(UpDirection, FollowsTheCameraInEveryWorld) {
 TEST(DrivingFrame, NamesErrorsAsTheDriverWould) {
   const auto truth = StraightAhead(21, 0.5);
   DrivingFrame frame(truth, UpDirection("auto", truth), "travel", 1.0);
-  const SE3& T_world_cam = truth[10].T_world_cam;
+  const geometry::SE3& T_world_cam = truth[10].T_world_cam;
   // Ahead is z, left is -x, up is -y.
   const auto error =
       frame.Split(truth[10].t, T_world_cam, T_world_cam.translation() + Eigen::Vector3d(-0.3, -0.2, 0.4));
@@ -72,7 +72,7 @@ TEST(DrivingFrame, HeadingIsHeldThroughATremblingStop) {
   const auto truth = Along(positions);
   DrivingFrame frame(truth, -Eigen::Vector3d::UnitY(), "travel", 1.0);
   for (std::size_t i = 0; i < truth.size(); ++i) {
-    const SE3& T_world_cam = truth[i].T_world_cam;
+    const geometry::SE3& T_world_cam = truth[i].T_world_cam;
     const Eigen::Vector3d estimate = T_world_cam.translation() + Eigen::Vector3d(0, 0, 1);
     EXPECT_NEAR(frame.Split(truth[i].t, T_world_cam, estimate).longitudinal, 1.0, 1e-3) << i;
   }
@@ -87,7 +87,7 @@ TEST(DrivingFrame, StandingStillFallsBackOnTheViewDirection) {
 }
 
 TEST(DrivingFrame, LooksDownAndStandsStill) {
-  Trajectory truth{{0, SE3(so3::Exp({-std::numbers::pi / 2, 0, 0}), Eigen::Vector3d::Zero())}};
+  geometry::Trajectory truth{{0, geometry::SE3(geometry::so3::Exp({-std::numbers::pi / 2, 0, 0}), Eigen::Vector3d::Zero())}};
   const Eigen::Vector3d up = truth[0].T_world_cam.rotation() * -Eigen::Vector3d::UnitZ();
   DrivingFrame frame(truth, up, "travel", 1.0);
   const auto error = frame.Split(0, truth[0].T_world_cam, {0.3, 0.2, 0.4});
@@ -96,8 +96,8 @@ TEST(DrivingFrame, LooksDownAndStandsStill) {
 }
 
 TEST(DrivingFrame, BodyIsTheCamerasOwnFrame) {
-  Trajectory truth = StraightAhead(5, 0.5);
-  const SE3 pose(so3::Exp({0.0, 0.5 * std::numbers::pi, 0.0}), {0, 0, 1.0});  // looks along x, right is -z
+  geometry::Trajectory truth = StraightAhead(5, 0.5);
+  const geometry::SE3 pose(geometry::so3::Exp({0.0, 0.5 * std::numbers::pi, 0.0}), {0, 0, 1.0});  // looks along x, right is -z
   DrivingFrame frame(truth, -Eigen::Vector3d::UnitY(), "body", 1.0);
   const auto error = frame.Split(truth[2].t, pose, Eigen::Vector3d(0.3, -0.2, 1.4));
   EXPECT_NEAR(error.longitudinal, 0.3, 1e-12);
@@ -136,9 +136,10 @@ TEST(PositionSearch, FindsWhatAWalkFinds) {
 
 TEST(Evaluation, ErrorOverDistanceLeavesOutTheFirstMetre) {
   const auto truth = StraightAhead(11, 0.4);  // 4 m
-  Trajectory estimate = truth;
+  geometry::Trajectory estimate = truth;
   for (auto& pose : estimate) {
-    pose.T_world_cam = SE3(pose.T_world_cam.rotation(), pose.T_world_cam.translation() + Eigen::Vector3d(0, 0, 0.1));
+    pose.T_world_cam =
+        geometry::SE3(pose.T_world_cam.rotation(), pose.T_world_cam.translation() + Eigen::Vector3d(0, 0, 0.1));
   }
   const auto result = Evaluate(truth, estimate, std::vector{ParseAlignment("none")}, {}, {}).alignments.front();
   double expected = 0.0;
@@ -154,9 +155,10 @@ TEST(Evaluation, ErrorOverDistanceLeavesOutTheFirstMetre) {
 
 TEST(Evaluation, ProjectionConfinesAllErrorsToThePlane) {
   const auto truth = StraightAhead(51, 0.4);
-  Trajectory estimate = truth;
+  geometry::Trajectory estimate = truth;
   for (auto& pose : estimate) {
-    pose.T_world_cam = SE3(so3::Exp({0.3, 0.1, 0.2}), pose.T_world_cam.translation() + Eigen::Vector3d(0, 5.0, 0));
+    pose.T_world_cam =
+        geometry::SE3(geometry::so3::Exp({0.3, 0.1, 0.2}), pose.T_world_cam.translation() + Eigen::Vector3d(0, 5.0, 0));
   }
   EvaluationOptions options;
   options.project = "xz";
@@ -204,7 +206,7 @@ TEST(Evaluation, WithoutStampsThereAreNoSeconds) {
 
 TEST(Evaluation, CountsPathCoverageAndGaps) {
   const auto truth = StraightAhead(201, 0.5);  // 10 s, 100 m
-  Trajectory estimate;
+  geometry::Trajectory estimate;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const double t = ToSeconds(truth[i].t);
     if (t >= 2.0 && (t <= 5.0 || t >= 6.0)) estimate.push_back(truth[i]);
@@ -226,10 +228,10 @@ TEST(Evaluation, CountsPathCoverageAndGaps) {
 
 TEST(Evaluation, SignedErrorsAndTheirSummary) {
   const auto truth = StraightAhead(101, 0.5);
-  Trajectory estimate = truth;
+  geometry::Trajectory estimate = truth;
   for (auto& pose : estimate) {
     const Eigen::Vector3d p = pose.T_world_cam.translation();
-    pose.T_world_cam = SE3(pose.T_world_cam.rotation(), {0.01 * p.z(), 0, 0.98 * p.z()});
+    pose.T_world_cam = geometry::SE3(pose.T_world_cam.rotation(), {0.01 * p.z(), 0, 0.98 * p.z()});
   }
   const auto evaluation = Evaluate(truth, estimate, std::vector{ParseAlignment("none")}, {}, {});
   const auto& result = evaluation.alignments.front();
@@ -243,9 +245,10 @@ TEST(Evaluation, SignedErrorsAndTheirSummary) {
 
 TEST(Evaluation, RotationErrorIsAnAngle) {
   const auto truth = StraightAhead(11, 0.5);
-  Trajectory estimate = truth;
+  geometry::Trajectory estimate = truth;
   for (auto& pose : estimate) {
-    pose.T_world_cam = SE3(so3::Exp({0, 0.1, 0}) * pose.T_world_cam.rotation(), pose.T_world_cam.translation());
+    pose.T_world_cam =
+        geometry::SE3(geometry::so3::Exp({0, 0.1, 0}) * pose.T_world_cam.rotation(), pose.T_world_cam.translation());
   }
   const auto result = Evaluate(truth, estimate, std::vector{ParseAlignment("none")}, {}, {}).alignments.front();
   EXPECT_NEAR(result.Ape(PoseRelation::kRotationDeg).mean, 0.1 * 180.0 / std::numbers::pi, 1e-9);
@@ -258,4 +261,4 @@ TEST(Statistics, OfNothingAreNotNumbers) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::evaluation

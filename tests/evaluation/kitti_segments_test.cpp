@@ -6,18 +6,18 @@
 #include <numbers>
 #include <random>
 
+#include "evaluation/reference.hpp"
 #include "evo/core/error.hpp"
-#include "reference.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 namespace {
 
 constexpr double kTolerance = 1e-9;
 
 /// Lines of 12 numbers, a 3x4 matrix T_world_cam by rows.
-std::vector<SE3> ReadKittiPoses(const std::string& name) {
+std::vector<geometry::SE3> ReadKittiPoses(const std::string& name) {
   std::ifstream file(ReferencePath(name));
-  std::vector<SE3> poses;
+  std::vector<geometry::SE3> poses;
   Eigen::Matrix<double, 3, 4, Eigen::RowMajor> T;
   while (true) {
     for (int i = 0; i < 12; ++i) file >> T.data()[i];
@@ -40,8 +40,8 @@ MatchedPath ReadKittiPath() {
 std::vector<PosePair> StraightLine(int n, double scale, double turn) {
   std::vector<PosePair> pairs;
   for (int i = 0; i < n; ++i) {
-    const SE3 truth(Eigen::Quaterniond::Identity(), Eigen::Vector3d(i, 0, 0));
-    const SE3 estimate(so3::Exp(Eigen::Vector3d(0, 0, turn * i)), Eigen::Vector3d(scale * i, 0, 0));
+    const geometry::SE3 truth(Eigen::Quaterniond::Identity(), Eigen::Vector3d(i, 0, 0));
+    const geometry::SE3 estimate(geometry::so3::Exp(Eigen::Vector3d(0, 0, turn * i)), Eigen::Vector3d(scale * i, 0, 0));
     pairs.push_back({i * kNsPerSecond, i * kNsPerSecond, estimate, truth});
   }
   return pairs;
@@ -113,12 +113,13 @@ TEST(KittiSegments, HoldNothingWhereNoLengthFits) {
 TEST(KittiSegments, IgnoreRigidMotionsButNotScale) {
   const auto pairs = StraightLine(101, 1.1, 0.001);
   const std::vector<double> lengths = {20.0};
-  const Similarity motion{1.0, SE3(so3::Exp({0.3, -2.0, 0.5}), Eigen::Vector3d(5, 6, 7))};
+  const Similarity motion{1.0, geometry::SE3(geometry::so3::Exp({0.3, -2.0, 0.5}), Eigen::Vector3d(5, 6, 7))};
   const auto plain = ComputeKittiSegments(MatchPath(pairs, {}), lengths, 1);
   const auto moved = ComputeKittiSegments(MatchPath(pairs, motion), lengths, 1);
   EXPECT_NEAR(moved.translation_percent.rmse, plain.translation_percent.rmse, 1e-10);
   EXPECT_NEAR(moved.rotation_deg_per_m.rmse, plain.rotation_deg_per_m.rmse, 1e-12);
-  const auto scaled = ComputeKittiSegments(MatchPath(StraightLine(101, 1.1, 0.0), {1.0 / 1.1, SE3()}), lengths, 1);
+  const auto scaled =
+      ComputeKittiSegments(MatchPath(StraightLine(101, 1.1, 0.0), {1.0 / 1.1, geometry::SE3()}), lengths, 1);
   EXPECT_NEAR(scaled.translation_percent.max, 0.0, 1e-10);
 }
 
@@ -129,8 +130,8 @@ TEST(KittiSegments, FindTheEndsOfALinearSearch) {
   double x = 0.0;
   for (int i = 0; i < 400; ++i) {
     x += random() % 3 == 0 ? 0.0 : static_cast<double>(random() % 5);
-    pairs.push_back({i, i, SE3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0.01 * i, 0)),
-                     SE3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0, 0))});
+    pairs.push_back({i, i, geometry::SE3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0.01 * i, 0)),
+                     geometry::SE3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0, 0))});
   }
   for (const double length : {1.0, 7.0, 50.0}) {
     double sum = 0.0;
@@ -166,4 +167,4 @@ TEST(Lengths, AreMetresOrSharesOfThePath) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::evaluation

@@ -8,27 +8,27 @@
 
 #include "evo/core/error.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 namespace {
 
 /// Poses along x at `positions` (m), turning 1 degree a metre about z, 0.1 s apart.
-std::vector<StampedPose> Along(const std::vector<double>& positions) {
-  std::vector<StampedPose> poses;
+std::vector<geometry::StampedPose> Along(const std::vector<double>& positions) {
+  std::vector<geometry::StampedPose> poses;
   for (const double x : positions) {
     poses.push_back({static_cast<TimeNs>(poses.size()) * 100'000'000,
-                     SE3(so3::Exp({0, 0, x * std::numbers::pi / 180.0}), {x, 0, 0})});
+                     geometry::SE3(geometry::so3::Exp({0, 0, x * std::numbers::pi / 180.0}), {x, 0, 0})});
   }
   return poses;
 }
 
-std::vector<StampedPose> AtSeconds(const std::vector<double>& stamps) {
-  std::vector<StampedPose> poses;
-  for (const double s : stamps) poses.push_back({FromSeconds(s), SE3()});
+std::vector<geometry::StampedPose> AtSeconds(const std::vector<double>& stamps) {
+  std::vector<geometry::StampedPose> poses;
+  for (const double s : stamps) poses.push_back({FromSeconds(s), geometry::SE3()});
   return poses;
 }
 
-std::vector<std::pair<int, int>> Select(const std::vector<StampedPose>& poses, const char* delta, const char* selection,
-                                        double tolerance = 0.1) {
+std::vector<std::pair<int, int>> Select(const std::vector<geometry::StampedPose>& poses, const char* delta,
+                                        const char* selection, double tolerance = 0.1) {
   std::vector<std::pair<int, int>> pairs;
   for (const auto& [i, j] : SelectPairs(poses, ParseDeltas(delta).front(), selection, tolerance)) {
     pairs.emplace_back(static_cast<int>(i), static_cast<int>(j));
@@ -122,7 +122,7 @@ TEST(PairSelection, AllPairsAreThoseOfASearchThroughAll) {
         const double miss = std::abs(path[j] - path[i] - 3.0);
         if (best == i || miss < std::abs(path[best] - path[i] - 3.0)) best = j;
         const Eigen::Quaterniond turn = poses[i].T_world_cam.rotation().conjugate() * poses[j].T_world_cam.rotation();
-        const double angle = so3::Log(turn).norm() * 180.0 / std::numbers::pi;
+        const double angle = geometry::so3::Log(turn).norm() * 180.0 / std::numbers::pi;
         if (std::abs(angle - 7.0) <= 7.0 * tolerance) angles.emplace_back(i, j);
       }
       if (best > i && std::abs(path[best] - path[i] - 3.0) <= 3.0 * tolerance) nearest.emplace_back(i, best);
@@ -133,4 +133,4 @@ TEST(PairSelection, AllPairsAreThoseOfASearchThroughAll) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::evaluation

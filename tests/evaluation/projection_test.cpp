@@ -1,23 +1,23 @@
-#include "evo/evaluation/projection.hpp"
+#include "evaluation/trajectory/projection.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-namespace evo {
+namespace evo::evaluation {
 namespace {
 
 Eigen::Quaterniond Turn(double x, double y, double z) {
-  return so3::Exp({0, 0, z}) * so3::Exp({0, y, 0}) * so3::Exp({x, 0, 0});
+  return geometry::so3::Exp({0, 0, z}) * geometry::so3::Exp({0, y, 0}) * geometry::so3::Exp({x, 0, 0});
 }
 
-void ExpectPose(const SE3& actual, const Eigen::Quaterniond& rotation, const Eigen::Vector3d& position) {
-  EXPECT_LT((actual.Matrix() - SE3(rotation, position).Matrix()).norm(), 1e-12);
+void ExpectPose(const geometry::SE3& actual, const Eigen::Quaterniond& rotation, const Eigen::Vector3d& position) {
+  EXPECT_LT((actual.Matrix() - geometry::SE3(rotation, position).Matrix()).norm(), 1e-12);
 }
 
 TEST(Projection, KeepsTheTurnAboutTheNormalOnly) {
-  const SE3 pose(Turn(0.3, -0.7, 2.1), {1, 2, 3});
+  const geometry::SE3 pose(Turn(0.3, -0.7, 2.1), {1, 2, 3});
   ExpectPose(Project(pose, "none"), pose.rotation(), {1, 2, 3});
   ExpectPose(Project(pose, "xy"), Turn(0, 0, 2.1), {1, 2, 0});
   ExpectPose(Project(pose, "xz"), Turn(0, -0.7, 0), {1, 0, 3});
@@ -25,18 +25,18 @@ TEST(Projection, KeepsTheTurnAboutTheNormalOnly) {
 }
 
 TEST(Projection, ASecondTimeChangesNothing) {
-  const SE3 pose(Turn(-0.4, 0.5, -3.0), {1, 2, 3});
+  const geometry::SE3 pose(Turn(-0.4, 0.5, -3.0), {1, 2, 3});
   for (const char* plane : {"xy", "xz", "yz"}) {
-    const SE3 once = Project(pose, plane);
+    const geometry::SE3 once = Project(pose, plane);
     ExpectPose(Project(once, plane), once.rotation(), once.translation());
   }
 }
 
 TEST(Projection, SurvivesTheGimbalLock) {
-  const SE3 pose(Turn(0.4, 0.5 * std::numbers::pi, 0.0), {1, 2, 3});
+  const geometry::SE3 pose(Turn(0.4, 0.5 * std::numbers::pi, 0.0), {1, 2, 3});
   for (const char* plane : {"xy", "xz", "yz"}) EXPECT_TRUE(Project(pose, plane).Matrix().allFinite()) << plane;
   ExpectPose(Project(pose, "xz"), Turn(0, 0.5 * std::numbers::pi, 0), {1, 0, 3});
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::evaluation

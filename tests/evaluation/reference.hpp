@@ -9,13 +9,15 @@
 
 #include "evo/io/trajectory_io.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 
 inline std::filesystem::path ReferencePath(const std::string& name) {
   return std::filesystem::path(EVO_SOURCE_DIR) / "tests/evaluation/data" / name;
 }
 
-inline Trajectory ReadReferenceTrajectory(const std::string& name) { return ReadTum(ReferencePath(name)); }
+inline geometry::Trajectory ReadReferenceTrajectory(const std::string& name) {
+  return io::ReadTum(ReferencePath(name));
+}
 
 /// The rows of a CSV file, each by column name.
 inline std::vector<std::map<std::string, std::string>> ReadReferenceTable(const std::string& name) {
@@ -39,4 +41,4 @@ inline std::vector<std::map<std::string, std::string>> ReadReferenceTable(const 
   return rows;
 }
 
-}  // namespace evo
+}  // namespace evo::evaluation

@@ -1,6 +1,6 @@
 // The numbers that other evaluators print for the same files: evo 1.36.5 (every row of its table, driven by the command
 // written beside it), the TUM RGB-D tools, and driving errors computed independently.
-#include "reference.hpp"
+#include "evaluation/reference.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 #include "evo/core/error.hpp"
 #include "evo/evaluation/evaluation.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 namespace {
 
 /// What a command line of evo asks for, in our terms.
@@ -102,7 +102,7 @@ Question ReadCommand(const std::string& command) {
 Statistics Answer(const Question& question) {
   const auto read = [&](const std::string& path) {
     const auto file = ReferencePath(std::filesystem::path(path).filename());
-    return question.kitti ? ReadKitti(file) : ReadTum(file);
+    return question.kitti ? io::ReadKitti(file) : io::ReadTum(file);
   };
   const auto evaluation =
       Evaluate(read(question.truth), read(question.estimate), std::vector{ParseAlignment(question.alignment)},
@@ -286,4 +286,4 @@ TEST(DrivingReference, SplitsAlongTheTravelAndTheBody) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::evaluation

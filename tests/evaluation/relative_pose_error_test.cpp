@@ -9,30 +9,31 @@
 #include "evo/core/error.hpp"
 #include "evo/evaluation/evaluation.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 namespace {
 
-Trajectory Curve(int poses, double noise) {
+geometry::Trajectory Curve(int poses, double noise) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal(0.0, noise);
-  Trajectory trajectory;
+  geometry::Trajectory trajectory;
   for (int i = 0; i < poses; ++i) {
     const double s = 0.1 * i;
     const Eigen::Vector3d shift(normal(random), normal(random), normal(random));
     const Eigen::Vector3d turn(normal(random), normal(random), normal(random));
-    trajectory.push_back({FromSeconds(s), SE3(so3::Exp({0.1 * s, 0.3 * std::sin(s), -0.2 * s}) * so3::Exp(0.1 * turn),
-                                              Eigen::Vector3d(3.0 * s, std::sin(0.7 * s), 0.2 * s * s) + shift)});
+    trajectory.push_back(
+        {FromSeconds(s), geometry::SE3(geometry::so3::Exp({0.1 * s, 0.3 * std::sin(s), -0.2 * s}) * geometry::so3::Exp(0.1 * turn),
+                                       Eigen::Vector3d(3.0 * s, std::sin(0.7 * s), 0.2 * s * s) + shift)});
   }
   return trajectory;
 }
 
-Trajectory Moved(Trajectory trajectory, const Similarity& similarity) {
+geometry::Trajectory Moved(geometry::Trajectory trajectory, const Similarity& similarity) {
   for (auto& pose : trajectory) pose.T_world_cam = similarity * pose.T_world_cam;
   return trajectory;
 }
 
-std::vector<RelativePoseError> Rpe(const Trajectory& truth, const Trajectory& estimate, const std::string& pairs,
-                                   const std::string& deltas = "1f,5f,1s,3m,10deg") {
+std::vector<RelativePoseError> Rpe(const geometry::Trajectory& truth, const geometry::Trajectory& estimate,
+                                   const std::string& pairs, const std::string& deltas = "1f,5f,1s,3m,10deg") {
   EvaluationOptions options;
   options.rpe.deltas = deltas;
   options.rpe.pairs = pairs;
@@ -43,7 +44,7 @@ std::vector<RelativePoseError> Rpe(const Trajectory& truth, const Trajectory& es
 TEST(RelativePoseError, DoesNotDependOnEitherWorldFrame) {
   const auto truth = Curve(200, 0.0);
   const auto estimate = Curve(200, 0.02);
-  const Similarity motion{1.0, SE3(so3::Exp({0.4, -1.2, 2.0}), {100.0, -20.0, 3.0})};
+  const Similarity motion{1.0, geometry::SE3(geometry::so3::Exp({0.4, -1.2, 2.0}), {100.0, -20.0, 3.0})};
   for (const char* selection : {"consecutive", "all", "closest"}) {
     const auto expected = Rpe(truth, estimate, selection);
     for (const auto& moved : {Rpe(truth, Moved(estimate, motion), selection),
@@ -62,7 +63,7 @@ TEST(RelativePoseError, DoesNotDependOnEitherWorldFrame) {
 
 TEST(RelativePoseError, ScaleErrsInProportion) {
   const auto truth = Curve(100, 0.0);
-  const auto rpe = Rpe(truth, Moved(truth, {1.1, SE3()}), "all", "7f").front().relations;
+  const auto rpe = Rpe(truth, Moved(truth, {1.1, geometry::SE3()}), "all", "7f").front().relations;
   EXPECT_NEAR(Find(rpe, PoseRelation::kPointDistanceRatio).min, 10.0, 1e-9);
   EXPECT_NEAR(Find(rpe, PoseRelation::kPointDistanceRatio).max, 10.0, 1e-9);
   EXPECT_NEAR(Find(rpe, PoseRelation::kTranslation).mean, Find(rpe, PoseRelation::kPointDistance).mean, 1e-12);
@@ -71,8 +72,10 @@ TEST(RelativePoseError, ScaleErrsInProportion) {
 
 TEST(RelativePoseError, RelationsOfOneKnownMotion) {
   // The truth moves 2 m ahead; the estimate 2 m ahead and 1 m aside while it turns by 0.5 rad.
-  const Trajectory truth{{0, SE3()}, {kNsPerSecond, SE3(Eigen::Quaterniond::Identity(), {0, 0, 2})}};
-  const Trajectory estimate{{0, SE3()}, {kNsPerSecond, SE3(so3::Exp({0, 0.5, 0}), {1, 0, 2})}};
+  const geometry::Trajectory truth{{0, geometry::SE3()},
+                                   {kNsPerSecond, geometry::SE3(Eigen::Quaterniond::Identity(), {0, 0, 2})}};
+  const geometry::Trajectory estimate{{0, geometry::SE3()},
+                                      {kNsPerSecond, geometry::SE3(geometry::so3::Exp({0, 0.5, 0}), {1, 0, 2})}};
   const auto rpe = Rpe(truth, estimate, "consecutive", "1f").front().relations;
   const double frobenius = 2.0 * std::numbers::sqrt2 * std::sin(0.25);
   const std::pair<PoseRelation, double> expected[] = {
@@ -91,8 +94,8 @@ TEST(RelativePoseError, RelationsOfOneKnownMotion) {
 }
 
 TEST(RelativePoseError, StandingStillHasNoRatio) {
-  Trajectory still;
-  for (int i = 0; i < 10; ++i) still.push_back({i * kNsPerSecond, SE3()});
+  geometry::Trajectory still;
+  for (int i = 0; i < 10; ++i) still.push_back({i * kNsPerSecond, geometry::SE3()});
   const auto rpe = Rpe(still, still, "consecutive", "1f").front().relations;
   EXPECT_EQ(Find(rpe, PoseRelation::kPointDistance).count, 9);
   EXPECT_EQ(Find(rpe, PoseRelation::kPointDistanceRatio).count, 0);
@@ -117,7 +120,7 @@ TEST(RelativePoseError, TooLongADeltaIsEmptyOrRefused) {
 
 TEST(RelativePoseError, PairsFromTheTruthFollowItsPath) {
   const auto truth = Curve(100, 0.0);
-  const auto estimate = Moved(truth, {2.0, SE3()});
+  const auto estimate = Moved(truth, {2.0, geometry::SE3()});
   EvaluationOptions options;
   options.rpe.deltas = "3m";
   options.rpe.pairs_from = "truth";
@@ -133,4 +136,4 @@ TEST(RelativePoseError, PairsFromTheTruthFollowItsPath) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::evaluation

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-namespace evo {
+namespace evo::evaluation {
 namespace {
 
 constexpr TimeNs kStep = 50'000'000;
@@ -16,13 +16,13 @@ constexpr TimeNs kGap = 500'000'000;
 /// A curved drive of `n` poses 0.5 m apart; steps of the estimate are `scale(metres travelled)` times the true ones,
 /// seen in a world turned and moved.
 std::vector<PosePair> Drive(int n, const std::function<double(double)>& scale) {
-  const SE3 world(so3::Exp({0.4, -1.0, 2.0}), Eigen::Vector3d(100, -50, 3));
+  const geometry::SE3 world(geometry::so3::Exp({0.4, -1.0, 2.0}), Eigen::Vector3d(100, -50, 3));
   std::vector<PosePair> pairs;
   Eigen::Vector3d truth = Eigen::Vector3d::Zero();
   Eigen::Vector3d estimate = truth;
   for (int i = 0; i < n; ++i) {
-    const Eigen::Quaterniond heading = so3::Exp({0, 0.01 * i, 0});
-    pairs.push_back({i * kStep, i * kStep, world * SE3(heading, estimate), SE3(heading, truth)});
+    const Eigen::Quaterniond heading = geometry::so3::Exp({0, 0.01 * i, 0});
+    pairs.push_back({i * kStep, i * kStep, world * geometry::SE3(heading, estimate), geometry::SE3(heading, truth)});
     const Eigen::Vector3d step = heading * Eigen::Vector3d(0, 0, 0.5);
     estimate += scale(0.5 * (i + 0.5)) * step;
     truth += step;
@@ -31,7 +31,7 @@ std::vector<PosePair> Drive(int n, const std::function<double(double)>& scale) {
 }
 
 std::vector<ScaleSample> LocalScale(const std::vector<PosePair>& pairs, double scale = 1.0) {
-  return ComputeLocalScale(MatchPath(pairs, {scale, SE3()}), 0, kGap, {});
+  return ComputeLocalScale(MatchPath(pairs, {scale, geometry::SE3()}), 0, kGap, {});
 }
 
 TEST(LocalScale, IsOneForTheTruth) {
@@ -62,9 +62,9 @@ TEST(LocalScale, StaysNearTheTruthUnderNoise) {
   std::mt19937 random(5);
   std::normal_distribution<double> noise(0.0, 0.1);  // a fifth of a step: a ratio of path lengths would be 4 % off
   for (auto& pair : pairs) {
-    const SE3& pose = pair.T_world_cam_estimate;
+    const geometry::SE3& pose = pair.T_world_cam_estimate;
     const Eigen::Vector3d error(noise(random), noise(random), noise(random));
-    pair.T_world_cam_estimate = SE3(pose.rotation(), pose.translation() + error);
+    pair.T_world_cam_estimate = geometry::SE3(pose.rotation(), pose.translation() + error);
   }
   double sum = 0.0;
   for (const auto& sample : LocalScale(pairs)) {
@@ -101,7 +101,7 @@ TEST(LocalScale, DoesNotReachAcrossAGap) {
   for (std::size_t i = 200; i < pairs.size(); ++i) {
     pairs[i].t_truth += 2 * kGap;
     auto& pose = pairs[i].T_world_cam_estimate;
-    pose = SE3(pose.rotation(), pose.translation() + Eigen::Vector3d(1e4, 0, 0));
+    pose = geometry::SE3(pose.rotation(), pose.translation() + Eigen::Vector3d(1e4, 0, 0));
   }
   for (std::size_t i = 300; i < pairs.size(); ++i) pairs[i].t_truth += 2 * kGap;
   for (std::size_t i = 302; i < pairs.size(); ++i) pairs[i].t_truth += 2 * kGap;
@@ -120,7 +120,7 @@ TEST(LocalScale, ShortPathsAreJudgedByAFifth) {
   auto pairs = Drive(401, [](double metres) { return metres < 100.0 ? 1.0 : 0.5; });
   for (auto& pair : pairs) {
     for (auto* pose : {&pair.T_world_cam_estimate, &pair.T_world_cam_truth}) {
-      *pose = SE3(pose->rotation(), 0.01 * pose->translation());
+      *pose = geometry::SE3(pose->rotation(), 0.01 * pose->translation());
     }
   }
   const auto samples = LocalScale(pairs);
@@ -129,4 +129,4 @@ TEST(LocalScale, ShortPathsAreJudgedByAFifth) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::evaluation

@@ -4,7 +4,7 @@
 
 #include "evo/core/error.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 namespace {
 
 TEST(SegmentOptions, AreReadAsTheyArePrinted) {
@@ -36,7 +36,7 @@ TEST(SegmentOptions, NameTheLineOfALengthThatIsNone) {
 TEST(Segments, SharesAreThoseOfThePath) {
   std::vector<PosePair> pairs;
   for (int i = 0; i <= 100; ++i) {
-    const SE3 pose(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0.1 * i, 0, 0));
+    const geometry::SE3 pose(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0.1 * i, 0, 0));
     pairs.push_back({i * kNsPerSecond / 10, i * kNsPerSecond / 10, pose, pose});
   }
   SegmentOptions options;
@@ -50,4 +50,4 @@ TEST(Segments, SharesAreThoseOfThePath) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::evaluation

@@ -8,9 +8,9 @@
 #include <numbers>
 #include <random>
 
-#include "reference.hpp"
+#include "evaluation/reference.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
@@ -137,7 +137,7 @@ TEST(RpgReference, EveryRowCoincidesInTheProgramsFrame) {
   for (const auto& row : reference.rows) {
     const auto& pairs = reference.pairs.at(row.at("est"));
     const Similarity similarity = reference.AlignRow(row);
-    const auto path = MatchPath(pairs, {similarity.scale, SE3()});
+    const auto path = MatchPath(pairs, {similarity.scale, geometry::SE3()});
     Statistics found = Find(row, MatchPath(pairs, similarity), path);
     if (Length(row) == 10.0) {
       EXPECT_FALSE(Coincide(found, row));
@@ -177,12 +177,12 @@ std::vector<PosePair> Wander(int n, unsigned seed) {
     return size * Eigen::Vector3d(normal(random), normal(random), normal(random));
   };
   std::vector<PosePair> pairs;
-  SE3 truth;
+  geometry::SE3 truth;
   for (int i = 0; i < n; ++i) {
     const bool stands = random() % 3 == 0;
     const bool leaps = random() % 50 == 0;
-    if (!stands) truth = truth * SE3(so3::Exp(vector(0.05)), vector(leaps ? 3.0 : 0.2));
-    const SE3 error(so3::Exp(vector(0.01)), vector(0.02));
+    if (!stands) truth = truth * geometry::SE3(geometry::so3::Exp(vector(0.05)), vector(leaps ? 3.0 : 0.2));
+    const geometry::SE3 error(geometry::so3::Exp(vector(0.01)), vector(0.02));
     pairs.push_back({i, i, truth * error, truth});
   }
   return pairs;
@@ -211,7 +211,7 @@ TEST(SubTrajectories, EndAtTheEarlierOfTwoEquallyNearAndNotTooFarOff) {
   const auto count_and_error = [](const std::vector<double>& truth, const std::vector<double>& estimate) {
     std::vector<PosePair> pairs;
     for (std::size_t i = 0; i < truth.size(); ++i) {
-      const auto at = [](double x) { return SE3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0, 0)); };
+      const auto at = [](double x) { return geometry::SE3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0, 0)); };
       pairs.push_back({static_cast<TimeNs>(i), static_cast<TimeNs>(i), at(estimate[i]), at(truth[i])});
     }
     const auto errors = ComputeSubTrajectoryErrors(MatchPath(pairs), std::vector{10.0}, kUp);
@@ -230,8 +230,8 @@ TEST(SubTrajectories, NameTurnsAboutUpYawAndTheRestGravity) {
   const Eigen::Vector3d up = -Eigen::Vector3d::UnitY();
   std::vector<PosePair> pairs;
   for (int i = 0; i < 2; ++i) {
-    const SE3 truth(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0, 0, 10.0 * i));
-    const SE3 turned(so3::Exp(i * 0.02 * up), Eigen::Vector3d(0, 0.3 * i, 10.0 * i));
+    const geometry::SE3 truth(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0, 0, 10.0 * i));
+    const geometry::SE3 turned(geometry::so3::Exp(i * 0.02 * up), Eigen::Vector3d(0, 0.3 * i, 10.0 * i));
     pairs.push_back({i, i, turned, truth});
   }
   auto errors = ComputeSubTrajectoryErrors(MatchPath(pairs, {}), std::vector{10.0}, up).at(0);
@@ -241,7 +241,7 @@ TEST(SubTrajectories, NameTurnsAboutUpYawAndTheRestGravity) {
   EXPECT_NEAR(errors.rotation_deg_per_m.mean, 0.002 * kDegrees, 1e-9);
   EXPECT_NEAR(errors.translation_percent.mean, 3.0, 1e-9);
 
-  pairs[1].T_world_cam_estimate = SE3(so3::Exp({0.03, 0, 0}), Eigen::Vector3d(0, 0, 10));
+  pairs[1].T_world_cam_estimate = geometry::SE3(geometry::so3::Exp({0.03, 0, 0}), Eigen::Vector3d(0, 0, 10));
   errors = ComputeSubTrajectoryErrors(MatchPath(pairs, {}), std::vector{10.0}, up).at(0);
   EXPECT_NEAR(errors.yaw_deg.mean, 0.0, 1e-9);
   EXPECT_NEAR(errors.gravity_deg.mean, 0.03 * kDegrees, 1e-9);
@@ -257,4 +257,4 @@ TEST(SubTrajectories, LeaveOutLengthsThatDoNotFit) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::evaluation

@@ -8,7 +8,7 @@
 
 #include "evo/core/error.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 namespace {
 
 /// Tracks whose truth stands still at (50, 60), with errors along x that a test chooses.
@@ -233,4 +233,4 @@ TEST(TrackAccuracy, NothingToJudgeIsSaid) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::evaluation

@@ -8,7 +8,7 @@
 #include "evo/core/error.hpp"
 #include "evo/evaluation/track_accuracy.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 namespace {
 
 using testing::TrackScene;
@@ -25,9 +25,9 @@ TEST(TrackTruth, GroupsByIdInOrderOfTime) {
 }
 
 TEST(TrackTruth, TrueTracksAreInterpolatedButNotExtrapolatedNorAcrossHoles) {
-  const Tracks truth{{1, 100 * kMs, 10, 20}, {1, 200 * kMs, 20, 40}, {1, 900 * kMs, 30, 40}};
-  const Tracks tracks{{1, 50 * kMs, 0, 0},  {1, 100 * kMs, 0, 0}, {1, 130 * kMs, 0, 0},
-                      {1, 500 * kMs, 0, 0}, {1, 900 * kMs, 0, 0}, {1, 901 * kMs, 0, 0}};
+  const events::Tracks truth{{1, 100 * kMs, 10, 20}, {1, 200 * kMs, 20, 40}, {1, 900 * kMs, 30, 40}};
+  const events::Tracks tracks{{1, 50 * kMs, 0, 0},  {1, 100 * kMs, 0, 0}, {1, 130 * kMs, 0, 0},
+                              {1, 500 * kMs, 0, 0}, {1, 900 * kMs, 0, 0}, {1, 901 * kMs, 0, 0}};
   const auto result = TruthFromTracks(GroupById(tracks), truth, 500 * kMs)[0];
   EXPECT_EQ(result.verdict, TrackVerdict::kJudged);
   EXPECT_FALSE(result.starts_at_observation);
@@ -46,7 +46,7 @@ TEST(TrackTruth, TrackWithoutATrueOneHasNoTruth) {
   EXPECT_EQ(result[2].verdict, TrackVerdict::kNoTruth);
 }
 
-std::vector<TrueTrack> Triangulate(const TrackScene& scene, const Tracks& tracks) {
+std::vector<TrueTrack> Triangulate(const TrackScene& scene, const events::Tracks& tracks) {
   return TruthFromTriangulation(GroupById(tracks), scene.Poses(), scene.camera, kNsPerSecond);
 }
 
@@ -54,7 +54,7 @@ TEST(TrackTruth, TriangulationFindsThePointOfAPerfectTrack) {
   TrackScene scene;
   scene.camera = testing::MvsecCamera();
   scene.turning = {0.0, 0.1, 0.05};
-  const Tracks track = scene.Follow(1, {250.0, 60.0}, 0.013, 0.9);
+  const events::Tracks track = scene.Follow(1, {250.0, 60.0}, 0.013, 0.9);
   const auto truth = Triangulate(scene, track)[0];
   EXPECT_EQ(truth.verdict, TrackVerdict::kJudged);
   EXPECT_FALSE(truth.visible_until);
@@ -69,7 +69,7 @@ TEST(TrackTruth, ResidualsOfTheTriangulationAreTheNoiseLessWhatThePointTakesUp) 
   std::mt19937 random(7);
   std::normal_distribution<double> noise(0.0, kSigma);
   std::uniform_real_distribution<double> where(40.0, 140.0);
-  Tracks tracks;
+  events::Tracks tracks;
   for (int id = 0; id < 400; ++id) {
     for (auto observation : scene.Follow(id, {where(random), where(random)}, 0.0, 0.2)) {
       observation.x += noise(random);
@@ -87,13 +87,13 @@ TEST(TrackTruth, ResidualsOfTheTriangulationAreTheNoiseLessWhatThePointTakesUp) 
 
 TEST(TrackTruth, TriangulationIsBlindToDriftAlongTheMotionAndSeesItAcross) {
   const TrackScene scene;
-  Tracks along = scene.Follow(1, {150.0, 75.0}, 0.0, 1.0);
-  Tracks across = along;
+  events::Tracks along = scene.Follow(1, {150.0, 75.0}, 0.0, 1.0);
+  events::Tracks across = along;
   for (std::size_t i = 0; i < along.size(); ++i) {
     along[i].x += 0.02 * static_cast<double>(i);
     across[i].y += 0.02 * static_cast<double>(i);
   }
-  const auto rmse = [&](const Tracks& tracks) {
+  const auto rmse = [&](const events::Tracks& tracks) {
     return EvaluateTracks(GroupById(tracks), Triangulate(scene, tracks), "triangulated", {5.0})
         .thresholds.back()
         .error_px.rmse;
@@ -123,4 +123,4 @@ TEST(TrackTruth, TracksOfAnotherSensorAreRefused) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::evaluation

@@ -11,7 +11,7 @@
 #include <tuple>
 #include <vector>
 
-namespace evo {
+namespace evo::events {
 namespace {
 
 constexpr TimeNs kEver = std::numeric_limits<TimeNs>::min();
@@ -179,4 +179,4 @@ TEST(LocalEvents, ThinsEvenly) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::events

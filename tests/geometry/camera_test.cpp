@@ -6,7 +6,7 @@
 
 #include "evo/geometry/known_cameras.hpp"
 
-namespace evo {
+namespace evo::geometry {
 namespace {
 
 TEST(Camera, UndistortUndoesDistortOverTheWholeSensor) {
@@ -61,4 +61,4 @@ TEST(Camera, ContainsCountsPixelCentres) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::geometry

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace evo {
+namespace evo::geometry {
 namespace {
 
 Vector6d RandomTwist(std::mt19937* random, double angle) {
@@ -67,4 +67,4 @@ TEST(SE3, InterpolatesAlongTheShortWay) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::geometry

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace evo {
+namespace evo::geometry {
 namespace {
 
 TEST(Trajectory, PosesAreInterpolatedButNotExtrapolatedNorAcrossHoles) {
@@ -26,4 +26,4 @@ TEST(Trajectory, PathLengthIsSummedFromPoseToPose) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::geometry

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace evo {
+namespace evo::geometry {
 namespace {
 
 Eigen::Vector2d Project(const SE3& T_cam_world, const Eigen::Vector3d& point) {
@@ -65,4 +65,4 @@ TEST(Triangulation, CovarianceForetellsTheSpreadOfManyViews) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::geometry

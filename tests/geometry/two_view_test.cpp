@@ -7,7 +7,7 @@
 
 #include "evo/geometry/triangulation.hpp"
 
-namespace evo {
+namespace evo::geometry {
 namespace {
 
 /// Pairs of a forward-moving camera that also turns a little; `noise` on the plane z = 1.
@@ -134,4 +134,4 @@ TEST(TwoView, RansacIsRepeatable) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::geometry

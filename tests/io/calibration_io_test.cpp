@@ -6,7 +6,7 @@
 
 #include "io/support.hpp"
 
-namespace evo {
+namespace evo::io {
 namespace {
 
 const std::string kCamchain =
@@ -38,8 +38,8 @@ class CalibrationIoTest : public IoTest {
 };
 
 TEST_F(CalibrationIoTest, ReadsTheFirstCameraOfACamchain) {
-  const Calibration c = ReadCalibration(Write("camchain.yaml", kCamchain));
-  EXPECT_EQ(c.distortion, Distortion::kEquidistant);
+  const geometry::Calibration c = ReadCalibration(Write("camchain.yaml", kCamchain));
+  EXPECT_EQ(c.distortion, geometry::Distortion::kEquidistant);
   EXPECT_EQ(c.width, 346);
   EXPECT_EQ(c.height, 260);
   EXPECT_EQ(c.fx, 226.38018519795807);
@@ -54,13 +54,13 @@ TEST_F(CalibrationIoTest, ReadsTheFirstCameraOfACamchain) {
 TEST_F(CalibrationIoTest, ReadsRadtanCamchains) {
   std::string text = kCamchain;
   text.replace(text.find("equidistant"), 11, "radtan");
-  EXPECT_EQ(ReadCalibration(Write("camchain.yaml", text)).distortion, Distortion::kRadTan);
+  EXPECT_EQ(ReadCalibration(Write("camchain.yaml", text)).distortion, geometry::Distortion::kRadTan);
 }
 
 TEST_F(CalibrationIoTest, ReadsUzhWithTheSensorThatItDoesNotName) {
   const auto path = Write("calib.txt", kUzh);
-  const Calibration c = ReadCalibration(path);
-  EXPECT_EQ(c.distortion, Distortion::kRadTan);
+  const geometry::Calibration c = ReadCalibration(path);
+  EXPECT_EQ(c.distortion, geometry::Distortion::kRadTan);
   EXPECT_EQ(c.width, 240);
   EXPECT_EQ(c.height, 180);
   EXPECT_EQ(c.fx, 199.092366542);
@@ -115,7 +115,7 @@ TEST_F(CalibrationIoTest, RefusesOtherFiles) {
 
 /// As a lone camera is rectified: not turned, by its own intrinsics.
 TEST_F(CalibrationIoTest, ACamchainSaysHowToRectify) {
-  Calibration c{Distortion::kEquidistant, 30, 20, 11.5, 12.5, 14.0, 9.0, {0.1, 0.2, 0.3, 0.4, 0.0}};
+  geometry::Calibration c{geometry::Distortion::kEquidistant, 30, 20, 11.5, 12.5, 14.0, 9.0, {0.1, 0.2, 0.3, 0.4, 0.0}};
   WriteCamchain(folder / "camchain.yaml", c);
   std::ifstream file(folder / "camchain.yaml");
   const std::string text{std::istreambuf_iterator<char>(file), {}};
@@ -126,4 +126,4 @@ TEST_F(CalibrationIoTest, ACamchainSaysHowToRectify) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::io

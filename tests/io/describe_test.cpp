@@ -12,7 +12,7 @@
 #include "io/hdf5_support.hpp"
 #include "io/support.hpp"
 
-namespace evo {
+namespace evo::io {
 namespace {
 
 class DescribeTest : public IoTest {
@@ -41,7 +41,7 @@ TEST_F(DescribeTest, CountsTextEventsExactly) {
 }
 
 TEST_F(DescribeTest, SamplesMvsecEvents) {
-  const EventColumns events = MakeEvents(100'000, 0);
+  const events::EventColumns events = MakeEvents(100'000, 0);
   WriteMvsecEvents(folder / "a.hdf5", events);
   auto values = Values(folder / "a.hdf5", "MVSEC events");
   EXPECT_EQ(values["events"], "100000");
@@ -154,4 +154,4 @@ TEST_F(FileKindTest, IsToldByContent) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::io

@@ -13,7 +13,7 @@
 #include "io/hdf5_support.hpp"
 #include "io/support.hpp"
 
-namespace evo {
+namespace evo::io {
 namespace {
 
 constexpr hsize_t kColumns = 4;
@@ -69,8 +69,8 @@ std::vector<double> RowsByHdf5(const std::filesystem::path& path, std::size_t co
   return rows;
 }
 
-EventColumns EventsOf(const std::vector<double>& rows) {
-  EventColumns events;
+events::EventColumns EventsOf(const std::vector<double>& rows) {
+  events::EventColumns events;
   for (std::size_t i = 0; i < rows.size(); i += kColumns) {
     events.push_back(FromSeconds(rows[i + 2]), static_cast<std::uint16_t>(rows[i]),
                      static_cast<std::uint16_t>(rows[i + 1]), rows[i + 3] > 0.0 ? std::int8_t{1} : std::int8_t{-1});
@@ -81,10 +81,10 @@ EventColumns EventsOf(const std::vector<double>& rows) {
 /// The file holds just these rows, whoever reads it and wherever reading begins.
 void ExpectRows(const std::filesystem::path& path, const std::vector<double>& rows) {
   EXPECT_TRUE(RowsByHdf5(path, rows.size() / kColumns) == rows);
-  const EventColumns events = EventsOf(rows);
+  const events::EventColumns events = EventsOf(rows);
   ExpectSame(ReadAll(path), events);
-  const Interval middle{(events.t.back() - events.t[0]) / 3, (events.t.back() - events.t[0]) / 2};
-  const EventColumns cut = Cut(events, middle);
+  const events::Interval middle{(events.t.back() - events.t[0]) / 3, (events.t.back() - events.t[0]) / 2};
+  const events::EventColumns cut = Cut(events, middle);
   if (!cut.empty()) ExpectSame(ReadAll(path, middle), cut);
 }
 
@@ -282,4 +282,4 @@ TEST_F(Hdf5StorageTest, ReadsTablesThatAreNotChunked) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::io

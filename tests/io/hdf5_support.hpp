@@ -9,7 +9,7 @@
 
 #include "evo/events/event_columns.hpp"
 
-namespace evo {
+namespace evo::io {
 
 /// How a test stores a table: HDF5's own types and layouts, written with its C library and none of our code.
 struct Storage {
@@ -42,7 +42,7 @@ inline void StoreTable(const std::filesystem::path& path, const std::string& nam
 }
 
 /// Rows x y t p with the stamps in units of `ns_per_tick`.
-inline std::vector<double> EventRows(const EventColumns& events, TimeNs ns_per_tick = kNsPerSecond) {
+inline std::vector<double> EventRows(const events::EventColumns& events, TimeNs ns_per_tick = kNsPerSecond) {
   std::vector<double> rows;
   for (std::size_t i = 0; i < events.size(); ++i) {
     rows.push_back(events.x[i]);
@@ -59,4 +59,4 @@ inline void StoreEvents(const std::filesystem::path& path, const std::vector<dou
   StoreTable(path, "davis/left/events", {rows.size() / 4, 4}, rows, storage);
 }
 
-}  // namespace evo
+}  // namespace evo::io

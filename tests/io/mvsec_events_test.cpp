@@ -5,11 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "evo/io/open_events.hpp"
 #include "evo/io/mvsec_writer.hpp"
 #include "io/hdf5_support.hpp"
 #include "io/support.hpp"
 
-namespace evo {
+namespace evo::io {
 namespace {
 
 constexpr TimeNs kEpoch = 1506117912'000000000;
@@ -25,10 +26,10 @@ class MvsecEventsTest : public IoTest {
 };
 
 TEST_F(MvsecEventsTest, ReadsWhatItWritesToTheResolutionOfADouble) {
-  const EventColumns events = MakeEvents(150'000, kEpoch);
+  const events::EventColumns events = MakeEvents(150'000, kEpoch);
   const auto path = folder / "out" / "a_data.hdf5";
   WriteMvsecEvents(path, events);
-  EventColumns read = ReadAll(path);
+  events::EventColumns read = ReadAll(path);
   ASSERT_EQ(read.size(), events.size());
   for (std::size_t i = 0; i < events.size(); ++i) {
     ASSERT_LE(std::abs(read.t[i] - events.t[i]), 120) << i;
@@ -38,11 +39,11 @@ TEST_F(MvsecEventsTest, ReadsWhatItWritesToTheResolutionOfADouble) {
 }
 
 TEST_F(MvsecEventsTest, WritesInPiecesWhatItWritesAtOnce) {
-  const EventColumns events = MakeEvents(70'000, 0);
+  const events::EventColumns events = MakeEvents(70'000, 0);
   WriteMvsecEvents(folder / "whole.hdf5", events);
   {
     MvsecDataWriter writer(folder / "pieces.hdf5");
-    EventColumns piece;
+    events::EventColumns piece;
     for (std::size_t i = 0; i < events.size(); ++i) {
       piece.push_back(events.t[i], events.x[i], events.y[i], events.polarity[i]);
       if (piece.size() == 999 || i + 1 == events.size()) {
@@ -59,7 +60,7 @@ TEST_F(MvsecEventsTest, WritesInPiecesWhatItWritesAtOnce) {
 }
 
 TEST_F(MvsecEventsTest, ReadsEveryLayout) {
-  const EventColumns events = MakeEvents(30'000, 0);
+  const events::EventColumns events = MakeEvents(30'000, 0);
   const std::vector<double> rows = EventRows(events);
   const std::vector<Storage> storages = {{H5T_NATIVE_DOUBLE, {}, false},         {H5T_NATIVE_DOUBLE, {1024, 4}, true},
                                          {H5T_NATIVE_DOUBLE, {777, 1}, true},    {H5T_NATIVE_DOUBLE, {30'000, 4}, true},
@@ -70,17 +71,17 @@ TEST_F(MvsecEventsTest, ReadsEveryLayout) {
     const auto path = folder / (std::to_string(i) + ".hdf5");
     StoreEvents(path, rows, storages[i]);
     ExpectSame(ReadAll(path), events);
-    const Interval middle{(events.t.back() - events.t[0]) / 3, (events.t.back() - events.t[0]) / 2};
+    const events::Interval middle{(events.t.back() - events.t[0]) / 3, (events.t.back() - events.t[0]) / 2};
     ExpectSame(ReadAll(path, middle), Cut(events, middle));
   }
 }
 
 TEST_F(MvsecEventsTest, BlocksAreWholeChunksAndBounded) {
-  const EventColumns events = MakeEvents(300'000, 0);
+  const events::EventColumns events = MakeEvents(300'000, 0);
   const auto path = folder / "a.hdf5";
   StoreEvents(path, EventRows(events), {H5T_NATIVE_DOUBLE, {30'000, 4}, false});
   const auto reader = OpenEvents(path, {events.t[1000] - events.t[0], {}}, 346, 260);
-  EventColumns block;
+  events::EventColumns block;
   ASSERT_TRUE(reader->Next(&block));
   EXPECT_EQ(block.t.back(), events.t[89'999]);
   ASSERT_TRUE(reader->Next(&block));
@@ -94,46 +95,47 @@ TEST_F(MvsecEventsTest, BlocksAreWholeChunksAndBounded) {
 }
 
 TEST_F(MvsecEventsTest, IntervalsHoldWhatALinearReadingFinds) {
-  const EventColumns events = MakeEvents(20'000, 0);
+  const events::EventColumns events = MakeEvents(20'000, 0);
   const auto path = folder / "a.hdf5";
   StoreEvents(path, EventRows(events), {H5T_NATIVE_DOUBLE, {512, 4}, true});
   const TimeNs length = events.t.back();
   for (int i = 0; i < 30; ++i) {
     for (const TimeNs duration : {TimeNs{1000}, length / 7, length}) {
-      const Interval interval{length * i / 31, length * i / 31 + duration};
-      const EventColumns expected = Cut(events, interval);
+      const events::Interval interval{length * i / 31, length * i / 31 + duration};
+      const events::EventColumns expected = Cut(events, interval);
       if (!expected.empty()) ExpectSame(ReadAll(path, interval), expected);
     }
-    const Interval exact{events.t[600u * static_cast<unsigned>(i)], {}};
+    const events::Interval exact{events.t[600u * static_cast<unsigned>(i)], {}};
     ExpectSame(ReadAll(path, exact), Cut(events, exact));
   }
 }
 
 TEST_F(MvsecEventsTest, AnIntervalReadsNothingBeforeIt) {
-  const EventColumns events = MakeEvents(20'000, 0);
+  const events::EventColumns events = MakeEvents(20'000, 0);
   std::vector<double> rows = EventRows(events);
   rows[4 * 100] = 1e6;
   const auto path = folder / "a.hdf5";
   StoreEvents(path, rows);
-  const Interval late{events.t.back() / 2, {}};
+  const events::Interval late{events.t.back() / 2, {}};
   ExpectSame(ReadAll(path, late), Cut(events, late));
 }
 
 TEST_F(MvsecEventsTest, SaysHowLongTheRecordingIsWhenNothingIsLeft) {
   const auto path = folder / "a.hdf5";
   StoreEvents(path, {1, 1, 100.5, 1, 1, 1, 103, -1});
-  for (const Interval& interval : {Interval{3 * kNsPerSecond, {}}, Interval{kNsPerSecond, 2 * kNsPerSecond}}) {
+  for (const events::Interval& interval :
+       {events::Interval{3 * kNsPerSecond, {}}, events::Interval{kNsPerSecond, 2 * kNsPerSecond}}) {
     ExpectMentions(Refusal([&] { ReadAll(path, interval); }, ErrorKind::kNothingToDo),
                    {path.string(), "2.500000000 s long"});
   }
 }
 
 TEST_F(MvsecEventsTest, ReadsFloat32AndIntegersOnlyWhereTheirStampsAreSafe) {
-  const EventColumns events = MakeEvents(1000, kEpoch);
+  const events::EventColumns events = MakeEvents(1000, kEpoch);
   StoreEvents(folder / "us.hdf5", EventRows(events, 1000), {H5T_NATIVE_INT64, {}, false});
   ExpectSame(ReadAll(folder / "us.hdf5"), events);
   StoreEvents(folder / "ns.hdf5", EventRows(events, 1), {H5T_NATIVE_INT64, {}, false});
-  const EventColumns ns = ReadAll(folder / "ns.hdf5");
+  const events::EventColumns ns = ReadAll(folder / "ns.hdf5");
   ASSERT_EQ(ns.size(), events.size());
   for (std::size_t i = 0; i < ns.size(); ++i) ASSERT_LE(std::abs(ns.t[i] - events.t[i]), 128);
 
@@ -254,7 +256,7 @@ TEST_F(MvsecEventsTest, ReadsLzf) {
       0xe0, 23,   31,                         // 32 bytes from 32 back
   };
   StoreFiltered(folder / "a.hdf5", 32000, stream);
-  const EventColumns events = ReadAll(folder / "a.hdf5");
+  const events::EventColumns events = ReadAll(folder / "a.hdf5");
   EXPECT_EQ(events.t, (std::vector<TimeNs>{2 * kNsPerSecond, 2 * kNsPerSecond}));
   EXPECT_EQ(events.x, (std::vector<std::uint16_t>{2, 2}));
   EXPECT_EQ(events.polarity, (std::vector<std::int8_t>{1, 1}));
@@ -278,4 +280,4 @@ TEST_F(MvsecEventsTest, SaysWhereItCannotWrite) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::io

@@ -13,9 +13,10 @@
 #include <vector>
 
 #include "evo/core/error.hpp"
-#include "evo/io/event_reader.hpp"
+#include "evo/events/event_reader.hpp"
+#include "evo/io/open_events.hpp"
 
-namespace evo {
+namespace evo::io {
 
 /// A folder of its own for each test, removed afterwards.
 class IoTest : public ::testing::Test {
@@ -57,9 +58,9 @@ inline void ExpectMentions(const std::string& message, const std::vector<std::st
   for (const auto& part : parts) EXPECT_NE(message.find(part), std::string::npos) << part << " in: " << message;
 }
 
-inline EventColumns ReadAll(EventReader* reader) {
-  EventColumns all;
-  EventColumns block;
+inline events::EventColumns ReadAll(events::EventReader* reader) {
+  events::EventColumns all;
+  events::EventColumns block;
   while (reader->Next(&block)) {
     EXPECT_GT(block.size(), 0u);
     EXPECT_LE(block.size(), 300'000u);
@@ -74,12 +75,12 @@ inline EventColumns ReadAll(EventReader* reader) {
   return all;
 }
 
-inline EventColumns ReadAll(const std::filesystem::path& path, const Interval& interval = {}, int width = 346,
-                            int height = 260) {
+inline events::EventColumns ReadAll(const std::filesystem::path& path, const events::Interval& interval = {},
+                                    int width = 346, int height = 260) {
   return ReadAll(OpenEvents(path, interval, width, height).get());
 }
 
-inline void ExpectSame(const EventColumns& a, const EventColumns& b) {
+inline void ExpectSame(const events::EventColumns& a, const events::EventColumns& b) {
   EXPECT_TRUE(a.t == b.t);
   EXPECT_TRUE(a.x == b.x);
   EXPECT_TRUE(a.y == b.y);
@@ -87,8 +88,8 @@ inline void ExpectSame(const EventColumns& a, const EventColumns& b) {
 }
 
 /// Those of `all` with from <= t - first < to: what an interval means, said plainly.
-inline EventColumns Cut(const EventColumns& all, const Interval& interval) {
-  EventColumns cut;
+inline events::EventColumns Cut(const events::EventColumns& all, const events::Interval& interval) {
+  events::EventColumns cut;
   for (std::size_t i = 0; i < all.size(); ++i) {
     const TimeNs t = all.t[i] - all.t[0];
     if (t >= interval.from && (!interval.to || t < *interval.to)) {
@@ -99,8 +100,8 @@ inline EventColumns Cut(const EventColumns& all, const Interval& interval) {
 }
 
 /// Deterministic events on a 346 x 260 px sensor: bursts, pauses and many equal stamps. Whole microseconds.
-inline EventColumns MakeEvents(std::size_t count, TimeNs first) {
-  EventColumns events;
+inline events::EventColumns MakeEvents(std::size_t count, TimeNs first) {
+  events::EventColumns events;
   std::uint32_t state = 1;
   const auto next = [&state](std::uint32_t below) {
     state = 1664525u * state + 1013904223u;
@@ -117,4 +118,4 @@ inline EventColumns MakeEvents(std::size_t count, TimeNs first) {
 
 inline const std::filesystem::path kShared = std::filesystem::path(EVO_SOURCE_DIR) / ".." / "shared";
 
-}  // namespace evo
+}  // namespace evo::io

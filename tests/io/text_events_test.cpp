@@ -6,10 +6,10 @@
 
 #include "io/support.hpp"
 
-namespace evo {
+namespace evo::io {
 namespace {
 
-std::string ToText(const EventColumns& events) {
+std::string ToText(const events::EventColumns& events) {
   std::ostringstream text;
   for (std::size_t i = 0; i < events.size(); ++i) {
     text << FormatTime(events.t[i]) << ' ' << events.x[i] << ' ' << events.y[i] << ' ' << (events.polarity[i] > 0)
@@ -27,7 +27,7 @@ class TextEventsTest : public IoTest {
 };
 
 TEST_F(TextEventsTest, ReadsWhatWasWrittenInSeveralBlocks) {
-  const EventColumns events = MakeEvents(200'000, 1468940293'955124000);
+  const events::EventColumns events = MakeEvents(200'000, 1468940293'955124000);
   const auto path = Write("events.txt", ToText(events));
   ExpectSame(ReadAll(path), events);
   EXPECT_EQ(OpenEvents(path, {}, 346, 260)->first_stamp(), events.t[0]);
@@ -47,7 +47,7 @@ TEST_F(TextEventsTest, ReadsEveryWritingOfALine) {
                           "1.0000000015 7 8 1\n"
                           "1.5e0 9 10 0\n"
                           "1468941032.255472635 11 12 -1");
-  const EventColumns events = ReadAll(path);
+  const events::EventColumns events = ReadAll(path);
   EXPECT_EQ(events.t, (std::vector<TimeNs>{500000000, 500000001, 600000000, 1000000000, 1000000001, 1000000002,
                                            1500000000, 1468941032255472635}));
   EXPECT_EQ(events.x, (std::vector<std::uint16_t>{1, 345, 3, 5, 7, 7, 9, 11}));
@@ -60,21 +60,21 @@ TEST_F(TextEventsTest, KeepsEveryDigitOfAStamp) {
   for (std::size_t decimals = 0; decimals <= digits.size(); ++decimals) {
     std::string stamp = "12";
     if (decimals > 0) stamp.append(".").append(digits, 0, decimals);
-    const EventColumns events = ReadAll(Write("events.txt", stamp + " 1 2 1\n"));
+    const events::EventColumns events = ReadAll(Write("events.txt", stamp + " 1 2 1\n"));
     ASSERT_EQ(events.size(), 1u);
     EXPECT_EQ(events.t[0], *ParseTime(stamp)) << stamp;
   }
 }
 
 TEST_F(TextEventsTest, IntervalsHoldWhatALinearReadingFinds) {
-  const EventColumns events = MakeEvents(20'000, 3'811'000);
+  const events::EventColumns events = MakeEvents(20'000, 3'811'000);
   const auto path = Write("events.txt", "# a comment\n" + ToText(events) + "\n# the end\n");
   const TimeNs length = events.t.back() - events.t.front();
   for (int i = 0; i < 40; ++i) {
     const TimeNs from = length * i / 41;
     for (const TimeNs duration : {TimeNs{1000}, length / 7, length}) {
-      const Interval interval{from, from + duration};
-      const EventColumns expected = Cut(events, interval);
+      const events::Interval interval{from, from + duration};
+      const events::EventColumns expected = Cut(events, interval);
       if (expected.empty()) continue;
       ExpectSame(ReadAll(path, interval), expected);
     }
@@ -84,20 +84,21 @@ TEST_F(TextEventsTest, IntervalsHoldWhatALinearReadingFinds) {
 }
 
 TEST_F(TextEventsTest, AnIntervalReadsNothingBeforeIt) {
-  const EventColumns events = MakeEvents(100'000, 0);
+  const events::EventColumns events = MakeEvents(100'000, 0);
   std::string text = ToText(events);
   const std::size_t early = text.find('\n', text.size() / 10) + 1;
   text.replace(early, 3, "bad");
   const auto path = Write("events.txt", text);
-  const Interval late{(events.t.back() - events.t.front()) / 2, {}};
+  const events::Interval late{(events.t.back() - events.t.front()) / 2, {}};
   ExpectSame(ReadAll(path, late), Cut(events, late));
   Refusal([&] { ReadAll(path); });
 }
 
 TEST_F(TextEventsTest, SaysHowLongTheRecordingIsWhenNothingIsLeft) {
   const auto path = Write("events.txt", "1.5 1 1 0\n2 1 1 0\n4.25 1 1 1\n");
-  for (const Interval& interval : {Interval{3 * kNsPerSecond, {}}, Interval{kNsPerSecond, kNsPerSecond},
-                                   Interval{kNsPerSecond, 2 * kNsPerSecond}, Interval{9'000'000'000'000'000'000, {}}}) {
+  for (const events::Interval& interval :
+       {events::Interval{3 * kNsPerSecond, {}}, events::Interval{kNsPerSecond, kNsPerSecond},
+        events::Interval{kNsPerSecond, 2 * kNsPerSecond}, events::Interval{9'000'000'000'000'000'000, {}}}) {
     const auto message = Refusal([&] { ReadAll(path, interval); }, ErrorKind::kNothingToDo);
     ExpectMentions(message, {path.string(), "2.750000000 s long", "--from"});
   }
@@ -149,4 +150,4 @@ TEST_F(TextEventsTest, FindsTheEventsOfAFolder) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::io

@@ -14,20 +14,20 @@
 #include "io/hdf5_support.hpp"
 #include "io/support.hpp"
 
-namespace evo {
+namespace evo::io {
 namespace {
 
-Trajectory MakeTrajectory(int count, TimeNs first) {
-  Trajectory trajectory;
+geometry::Trajectory MakeTrajectory(int count, TimeNs first) {
+  geometry::Trajectory trajectory;
   for (int i = 0; i < count; ++i) {
-    Vector6d xi;
+    geometry::Vector6d xi;
     xi << 0.3 * i, std::sin(0.1 * i), 100.0 * std::cos(0.2 * i), 0.05 * i, 0.4, -0.02 * i;
-    trajectory.push_back({first + i * TimeNs{50'000'000}, SE3::Exp(xi)});
+    trajectory.push_back({first + i * TimeNs{50'000'000}, geometry::SE3::Exp(xi)});
   }
   return trajectory;
 }
 
-void ExpectNear(const Trajectory& a, const Trajectory& b, TimeNs stamp_tolerance) {
+void ExpectNear(const geometry::Trajectory& a, const geometry::Trajectory& b, TimeNs stamp_tolerance) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     EXPECT_LE(std::abs(a[i].t - b[i].t), stamp_tolerance);
@@ -55,7 +55,7 @@ class TrajectoryIoTest : public IoTest {
 };
 
 TEST_F(TrajectoryIoTest, ReadsWhatItWrites) {
-  const Trajectory trajectory = MakeTrajectory(50, 1506117912'000000123);
+  const geometry::Trajectory trajectory = MakeTrajectory(50, 1506117912'000000123);
   WriteTum(folder / "out" / "a.txt", trajectory);
   ExpectNear(ReadTum(folder / "out" / "a.txt"), trajectory, 0);
   ExpectNear(ReadGroundTruth(folder / "out" / "a.txt", GroundTruthSource::kCartographer), trajectory, 0);
@@ -82,8 +82,8 @@ TEST_F(TrajectoryIoTest, RefusesToWriteWhatIsNotFinite) {
 
 TEST_F(TrajectoryIoTest, ReadsBothTrajectoriesOfMvsec) {
   const auto path = folder / "a_gt.hdf5";
-  const Trajectory odometry = MakeTrajectory(30, 1506117912'000000000);
-  const Trajectory pose = MakeTrajectory(20, 1506117913'000000000);
+  const geometry::Trajectory odometry = MakeTrajectory(30, 1506117912'000000000);
+  const geometry::Trajectory pose = MakeTrajectory(20, 1506117913'000000000);
   WriteMvsecGroundTruth(path, odometry, pose);
   ExpectNear(ReadGroundTruth(path, GroundTruthSource::kLoam), odometry, 120);
   ExpectNear(ReadGroundTruth(path, GroundTruthSource::kCartographer), pose, 120);
@@ -93,7 +93,7 @@ TEST_F(TrajectoryIoTest, ReadsRowMajorMatrices) {
   const auto path = folder / "a_gt.hdf5";
   StoreTable(path, "davis/left/pose", {1, 4, 4}, {0, -1, 0, 5, 1, 0, 0, 6, 0, 0, 1, 7, 0, 0, 0, 1});
   StoreTable(path, "davis/left/pose_ts", {1}, {2.5});
-  const Trajectory read = ReadGroundTruth(path, GroundTruthSource::kCartographer);
+  const geometry::Trajectory read = ReadGroundTruth(path, GroundTruthSource::kCartographer);
   ASSERT_EQ(read.size(), 1u);
   EXPECT_EQ(read[0].t, 2'500'000'000);
   EXPECT_LT((read[0].T_world_cam * Eigen::Vector3d(1, 0, 0) - Eigen::Vector3d(5, 7, 7)).norm(), 1e-12);
@@ -129,7 +129,7 @@ TEST_F(TrajectoryIoTest, RefusesFaultyTextAndNamesTheLine) {
 TEST_F(TrajectoryIoTest, ReadsKittiPosesRowByRow) {
   const auto path = Write("poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n0 -1 0 5 1 0 0 6 0 0 1 7\n");
   EXPECT_EQ(DetectKind(path), FileKind::kKittiPoses);
-  const Trajectory read = ReadKitti(path);
+  const geometry::Trajectory read = ReadKitti(path);
   ASSERT_EQ(read.size(), 2u);
   EXPECT_EQ(read[1].t, kNsPerSecond);
   EXPECT_LT((read[1].T_world_cam * Eigen::Vector3d(1, 0, 0) - Eigen::Vector3d(5, 7, 7)).norm(), 1e-12);
@@ -163,9 +163,9 @@ TEST_F(TrajectoryIoTest, RefusesOtherFiles) {
 }
 
 TEST_F(TrajectoryIoTest, CovariancesComeBackAsTheyWere) {
-  std::vector<StampedCovariance> written;
+  std::vector<geometry::StampedCovariance> written;
   for (int k = 0; k < 3; ++k) {
-    Matrix6d root = Matrix6d::Random();
+    geometry::Matrix6d root = geometry::Matrix6d::Random();
     written.push_back({TimeNs{1'500'000'000} + k, root * root.transpose()});
   }
   WritePoseCovariances(folder / "pose_covariance.csv", written);
@@ -178,7 +178,7 @@ TEST_F(TrajectoryIoTest, CovariancesComeBackAsTheyWere) {
 }
 
 TEST_F(TrajectoryIoTest, BadCovariancesAreRefused) {
-  WritePoseCovariances(folder / "good.csv", {{TimeNs{1'000'000'000}, Matrix6d::Identity()}});
+  WritePoseCovariances(folder / "good.csv", {{TimeNs{1'000'000'000}, geometry::Matrix6d::Identity()}});
   std::ifstream file(folder / "good.csv");
   const std::string good{std::istreambuf_iterator<char>(file), {}};
   const std::string header = good.substr(0, good.find('\n') + 1);
@@ -201,4 +201,4 @@ TEST_F(TrajectoryIoTest, BadCovariancesAreRefused) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::io

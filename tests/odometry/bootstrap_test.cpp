@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace evo {
+namespace evo::odometry {
 namespace {
 
 constexpr double kFocal = 226.0;
@@ -44,7 +44,7 @@ Recording Record(const Scene& scene, std::uint32_t seed) {
     if (recording.outliers.back()) strays.back() = {stray(random), stray(random)};
   }
   for (int i = 0; i < 40; ++i) {
-    Frame frame{FromSeconds(0.02) * i, SE3(so3::Exp(i * scene.turn), i * scene.step).Inverse(), {}};
+    Frame frame{FromSeconds(0.02) * i, geometry::SE3(geometry::so3::Exp(i * scene.turn), i * scene.step).Inverse(), {}};
     for (int p = 0; p < scene.points; ++p) {
       const Eigen::Vector3d q = frame.T_cam_world * points[p];
       const Eigen::Vector2d px =
@@ -93,11 +93,11 @@ TEST(BootstrapGeometry, MotionIsRightAndOutliersAreLeftOut) {
       ASSERT_TRUE(bootstrap) << seed;
       const Frame& first = recording.frames[bootstrap->first];
       const Frame& last = recording.frames[bootstrap->last];
-      const SE3 truth = last.T_cam_world * first.T_cam_world.Inverse();
-      const SE3& found = bootstrap->T_cam_world.back();
+      const geometry::SE3 truth = last.T_cam_world * first.T_cam_world.Inverse();
+      const geometry::SE3& found = bootstrap->T_cam_world.back();
       const double cosine = found.translation().normalized().dot(truth.translation().normalized());
       // Medians are 0.05 and 0.5 degrees.
-      EXPECT_LT(so3::Log(found.rotation() * truth.rotation().conjugate()).norm(), 0.3 * kDegree) << seed;
+      EXPECT_LT(geometry::so3::Log(found.rotation() * truth.rotation().conjugate()).norm(), 0.3 * kDegree) << seed;
       EXPECT_GT(cosine, std::cos(4.0 * kDegree)) << seed;
       const auto is_outlier = [&](std::int64_t track) { return recording.outliers[track]; };
       const auto pairs = Match(first, last);
@@ -152,4 +152,4 @@ TEST(BootstrapGeometry, TracksThatAllMoveByThemselvesAreRefused) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::odometry

@@ -8,12 +8,12 @@
 #include <random>
 #include <utility>
 
-#include "evo/odometry/block_skyline.hpp"
 #include "evo/odometry/pose_uncertainty.hpp"
-#include "evo/odometry/track_weights.hpp"
+#include "odometry/bundle/block_skyline.hpp"
+#include "odometry/bundle/track_weights.hpp"
 #include "odometry/bundle_drive.hpp"
 
-namespace evo {
+namespace evo::odometry {
 namespace {
 
 using testing::DriveBundle;
@@ -23,9 +23,9 @@ void Disturb(BundleProblem* problem, double by) {
   std::mt19937 random(9);
   std::normal_distribution<double> normal(0.0, by);
   for (std::size_t i = problem->fixed_frames; i < problem->T_cam_world.size(); ++i) {
-    Vector6d xi;
+    geometry::Vector6d xi;
     for (int k = 0; k < 6; ++k) xi[k] = (k < 3 ? 1.0 : 0.1) * normal(random);
-    problem->T_cam_world[i] = SE3::Exp(xi) * problem->T_cam_world[i];
+    problem->T_cam_world[i] = geometry::SE3::Exp(xi) * problem->T_cam_world[i];
   }
   for (auto& point : problem->points) point.inverse_depth.z() *= std::exp(5 * normal(random));
 }
@@ -61,14 +61,14 @@ TEST(BundleAdjuster, JacobiansMatchFiniteDifferences) {
   const double h = 1e-6;
   for (const auto& observation : problem.observations) {
     const BundlePoint& point = problem.points[observation.point];
-    const SE3 pose = problem.T_cam_world[observation.frame] * problem.T_cam_world[point.anchor].Inverse();
+    const geometry::SE3 pose = problem.T_cam_world[observation.frame] * problem.T_cam_world[point.anchor].Inverse();
     const Eigen::Vector3d& at_point = point.inverse_depth;
     BundleJacobian at, plus, minus;
     ASSERT_TRUE(Linearize(pose, at_point, observation, &at));
     for (int k = 0; k < 6; ++k) {
-      const Vector6d d = h * Vector6d::Unit(k);
-      ASSERT_TRUE(Linearize(SE3::Exp(d) * pose, at_point, observation, &plus));
-      ASSERT_TRUE(Linearize(SE3::Exp(-d) * pose, at_point, observation, &minus));
+      const geometry::Vector6d d = h * geometry::Vector6d::Unit(k);
+      ASSERT_TRUE(Linearize(geometry::SE3::Exp(d) * pose, at_point, observation, &plus));
+      ASSERT_TRUE(Linearize(geometry::SE3::Exp(-d) * pose, at_point, observation, &minus));
       EXPECT_LT((at.by_pose.col(k) - (plus.error - minus.error) / (2 * h)).norm(), 1e-4);
     }
     for (int k = 0; k < 3; ++k) {
@@ -144,7 +144,7 @@ TEST(BundleAdjuster, ExpectingDriftEndsInAMinimum) {
     for (int k = 0; k < 6; ++k) {
       for (const double h : {1e-3, -1e-3}) {
         auto moved = problem;
-        moved.T_cam_world[i] = SE3::Exp(h * Vector6d::Unit(k)) * moved.T_cam_world[i];
+        moved.T_cam_world[i] = geometry::SE3::Exp(h * geometry::Vector6d::Unit(k)) * moved.T_cam_world[i];
         EXPECT_GT(cost(moved), least) << i << " " << k;
       }
     }
@@ -271,10 +271,10 @@ TEST(BundleAdjuster, OutliersHardlyMatter) {
   problem.fixed_frames = 2;
   for (std::size_t i = 0; i < problem.observations.size(); i += 12) problem.observations[i].x.x() += 0.1;
   AdjustBundle({.iterations = 50}, &problem);
-  const Vector6d error = (problem.T_cam_world.back() * truth.T_cam_world.back().Inverse()).Log();
+  const geometry::Vector6d error = (problem.T_cam_world.back() * truth.T_cam_world.back().Inverse()).Log();
   EXPECT_LT(error.head<3>().norm(), 0.1);
   EXPECT_LT(error.tail<3>().norm(), 0.005);
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::odometry

@@ -12,7 +12,7 @@
 #include "evo/odometry/bundle_adjuster.hpp"
 #include "odometry/track_covariance.hpp"
 
-namespace evo {
+namespace evo::odometry {
 namespace {
 
 constexpr int kFrames = 6;
@@ -26,7 +26,7 @@ BundleProblem DisturbedDrive(std::uint32_t seed) {
   std::normal_distribution<double> normal;
   BundleProblem problem;
   for (int i = 0; i < kFrames; ++i) {
-    problem.T_cam_world.emplace_back(so3::Exp({0.01 * i, -0.02 * i, 0.005 * i}),
+    problem.T_cam_world.emplace_back(geometry::so3::Exp({0.01 * i, -0.02 * i, 0.005 * i}),
                                      Eigen::Vector3d(0.05 * i, 0.0, -0.5 * i));
   }
   for (int p = 0; p < 40; ++p) {
@@ -41,9 +41,9 @@ BundleProblem DisturbedDrive(std::uint32_t seed) {
     }
   }
   for (int i = 2; i < kFrames; ++i) {
-    Vector6d twist;
+    geometry::Vector6d twist;
     for (int k = 0; k < 6; ++k) twist[k] = (k < 3 ? 0.03 : 0.003) * normal(random);
-    problem.T_cam_world[i] = SE3::Exp(twist) * problem.T_cam_world[i];
+    problem.T_cam_world[i] = geometry::SE3::Exp(twist) * problem.T_cam_world[i];
   }
   for (auto& point : problem.points) point.inverse_depth.z() *= std::exp(0.1 * normal(random));
   return problem;
@@ -120,10 +120,10 @@ void AddTrack(const BundleProblem& start, double drift, std::size_t first, std::
 /// What AdjustBundle does, by Ceres and its derivatives; the cost.
 double AdjustByCeres(double drift, BundleProblem* problem) {
   const BundleProblem start = *problem;
-  std::vector<Vector6d> poses(kFrames);
+  std::vector<geometry::Vector6d> poses(kFrames);
   ceres::Problem ceres;
   for (int i = 0; i < kFrames; ++i) {
-    poses[i] << so3::Log(start.T_cam_world[i].rotation()), start.T_cam_world[i].translation();
+    poses[i] << geometry::so3::Log(start.T_cam_world[i].rotation()), start.T_cam_world[i].translation();
     ceres.AddParameterBlock(poses[i].data(), 6);
     if (i < start.fixed_frames) ceres.SetParameterBlockConstant(poses[i].data());
   }
@@ -150,7 +150,7 @@ double AdjustByCeres(double drift, BundleProblem* problem) {
   ceres::Solve(options, &ceres, &summary);
   EXPECT_EQ(summary.termination_type, ceres::CONVERGENCE) << summary.message;
   for (int i = 0; i < kFrames; ++i) {
-    problem->T_cam_world[i] = SE3(so3::Exp(poses[i].head<3>()), poses[i].tail<3>());
+    problem->T_cam_world[i] = geometry::SE3(geometry::so3::Exp(poses[i].head<3>()), poses[i].tail<3>());
   }
   return summary.final_cost;
 }
@@ -190,4 +190,4 @@ TEST(BundleByCeres, HasTheSameMinimumWhereAFrameHoldsTheScale) { ExpectTheSameMi
 TEST(BundleByCeres, HasTheSameMinimumWhereTracksDrift) { ExpectTheSameMinimum(0.5, 2, -1); }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::odometry

@@ -6,7 +6,7 @@
 
 #include "evo/odometry/bundle_adjuster.hpp"
 
-namespace evo::testing {
+namespace evo::odometry::testing {
 
 /// A camera driving forward among points; poses and points as they truly are.
 inline BundleProblem DriveBundle(int frames, int points, double noise_px, std::uint32_t seed) {
@@ -15,7 +15,7 @@ inline BundleProblem DriveBundle(int frames, int points, double noise_px, std::u
   std::normal_distribution<double> normal(0.0, noise_px);
   BundleProblem problem;
   for (int i = 0; i < frames; ++i) {
-    problem.T_cam_world.emplace_back(so3::Exp({0.001 * i, -0.01 * i, 0}), Eigen::Vector3d(0.02 * i, 0, -0.4 * i));
+    problem.T_cam_world.emplace_back(geometry::so3::Exp({0.001 * i, -0.01 * i, 0}), Eigen::Vector3d(0.02 * i, 0, -0.4 * i));
   }
   const Eigen::Matrix2d px_per_unit = 226.0 * Eigen::Matrix2d::Identity();
   for (int p = 0; p < points; ++p) {
@@ -42,7 +42,8 @@ inline void LetTracksDrift(double step_px, std::uint32_t seed, BundleProblem* pr
   int point = -1;
   for (auto& observation : problem->observations) {
     const BundlePoint& of = problem->points[observation.point];
-    const SE3 T_cam_anchor = problem->T_cam_world[observation.frame] * problem->T_cam_world[of.anchor].Inverse();
+    const geometry::SE3 T_cam_anchor =
+        problem->T_cam_world[observation.frame] * problem->T_cam_world[of.anchor].Inverse();
     const double depth_share =
         (T_cam_anchor * (of.inverse_depth.head<2>().homogeneous() / of.inverse_depth.z())).z() * of.inverse_depth.z();
     if (observation.point != point) slid.setZero();
@@ -52,4 +53,4 @@ inline void LetTracksDrift(double step_px, std::uint32_t seed, BundleProblem* pr
   }
 }
 
-}  // namespace evo::testing
+}  // namespace evo::odometry::testing

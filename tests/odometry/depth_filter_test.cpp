@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace evo {
+namespace evo::odometry {
 namespace {
 
 constexpr double kFocal = 226.0;
@@ -18,7 +18,7 @@ Feature See(std::int64_t track, const Eigen::Vector3d& point_cam, const Eigen::V
 }
 
 /// The camera after `i` steps of sideways motion, relative to the key frame.
-SE3 Sideways(int i) { return {{1, 0, 0, 0}, Eigen::Vector3d(-0.1 * i, 0, 0)}; }
+geometry::SE3 Sideways(int i) { return {{1, 0, 0, 0}, Eigen::Vector3d(-0.1 * i, 0, 0)}; }
 
 TEST(DepthFilter, UncertaintyIsTheChangeOfDepthByOneAngle) {
   const Eigen::Vector3d ray = Eigen::Vector3d(0.1, 0.05, 1.0).normalized();
@@ -160,7 +160,7 @@ TEST(DepthFilter, WithoutMotionNothingConverges) {
   const Eigen::Vector3d point(0.7, -0.3, 5.0);
   filter.AddSeed(See(1, point), 0, 5.0, 1.0);
   for (int i = 1; i < 200; ++i) {
-    filter.Update({0, {}, {See(1, point, {noise(random), noise(random)})}}, [](int) { return SE3(); });
+    filter.Update({0, {}, {See(1, point, {noise(random), noise(random)})}}, [](int) { return geometry::SE3(); });
   }
   EXPECT_EQ(converged, 0);
 }
@@ -175,4 +175,4 @@ TEST(DepthFilter, ForgetsOldSeeds) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::odometry

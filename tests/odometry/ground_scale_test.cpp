@@ -11,7 +11,7 @@
 #include "evo/odometry/odometry.hpp"
 #include "odometry/synthetic_drive.hpp"
 
-namespace evo {
+namespace evo::odometry {
 namespace {
 
 constexpr double kHeight = 1.5;   // m, of the camera above the road
@@ -39,10 +39,10 @@ struct StreetOptions {
 /// What the odometry would have made of a drive: all frames, and the poses with a scale that drifts.
 struct Street {
   std::vector<Frame> frames;
-  std::vector<SE3> T_cam_world;         ///< true, m
-  std::vector<double> scale;            ///< true metres a unit, at every frame
-  std::vector<Segment> segments;        ///< as estimated
-  std::map<std::int64_t, int> born_at;  ///< frame, of the points of the segments' maps
+  std::vector<geometry::SE3> T_cam_world;  ///< true, m
+  std::vector<double> scale;               ///< true metres a unit, at every frame
+  std::vector<Segment> segments;           ///< as estimated
+  std::map<std::int64_t, int> born_at;     ///< frame, of the points of the segments' maps
 };
 
 class StreetMaker {
@@ -76,18 +76,18 @@ class StreetMaker {
   }
 
   /// T_world_cam: parallel to the road, then the camera on the car.
-  SE3 Pose(int frame) const {
+  geometry::SE3 Pose(int frame) const {
     const double z = frame * kStep;
     const double slope = options_.hills * std::sin(0.05 * z);
     const double x = options_.bend / 0.0016 * (1.0 - std::cos(0.04 * z));
     const double heading = std::atan(options_.bend / 0.04 * std::sin(0.04 * z));
-    const Eigen::Quaterniond car = so3::Exp({0, heading, 0}) * so3::Exp({-std::atan(slope), 0, 0});
-    const Eigen::Quaterniond camera = so3::Exp({-options_.pitch, 0, 0}) * so3::Exp({0, 0, options_.roll});
+    const Eigen::Quaterniond car = geometry::so3::Exp({0, heading, 0}) * geometry::so3::Exp({-std::atan(slope), 0, 0});
+    const Eigen::Quaterniond camera = geometry::so3::Exp({-options_.pitch, 0, 0}) * geometry::so3::Exp({0, 0, options_.roll});
     return {car * camera, Eigen::Vector3d(x, RoadHeight(z), z) + car * Eigen::Vector3d(0, -CameraHeight(z), 0)};
   }
 
   /// Where a ray from the camera meets the road or a wall, up to 40 m away.
-  std::optional<Eigen::Vector3d> Meet(const SE3& T_world_cam, const Eigen::Vector2d& x) {
+  std::optional<Eigen::Vector3d> Meet(const geometry::SE3& T_world_cam, const Eigen::Vector2d& x) {
     const double wall = 5.0 + 5.0 * Uniform();
     const Eigen::Vector3d from = T_world_cam.translation();
     const Eigen::Vector3d ray = T_world_cam.rotation() * x.homogeneous();
@@ -146,12 +146,12 @@ class StreetMaker {
       const bool lost = z >= options_.lost_at_m;
       const double scale = (lost ? 2.6 : 2.0) * (1.0 + 0.03 * std::sin(0.03 * z));
       street_.scale.push_back(scale);
-      const SE3 T_world_cam = street_.T_cam_world[i].Inverse();
+      const geometry::SE3 T_world_cam = street_.T_cam_world[i].Inverse();
       if (i > 0) position += (T_world_cam.translation() - Pose(i - 1).translation()) / scale;
       if (street_.segments.size() < (lost ? 2u : 1u)) street_.segments.emplace_back();
       Segment& segment = street_.segments.back();
       segment.frames.push_back(i);
-      segment.T_cam_world.push_back(SE3(T_world_cam.rotation(), position).Inverse());
+      segment.T_cam_world.push_back(geometry::SE3(T_world_cam.rotation(), position).Inverse());
       segment.inliers.push_back(100);
       for (const auto& [track, born_at] : street_.born_at) {
         if (born_at != i) continue;
@@ -176,7 +176,8 @@ GroundScale Scale(Street* street) {
 std::vector<Eigen::Vector3d> Positions(const Street& street) {
   std::vector<Eigen::Vector3d> positions;
   for (const Segment& segment : street.segments) {
-    for (const SE3& T_cam_world : segment.T_cam_world) positions.push_back(T_cam_world.Inverse().translation());
+    for (const geometry::SE3& T_cam_world : segment.T_cam_world)
+      positions.push_back(T_cam_world.Inverse().translation());
   }
   return positions;
 }
@@ -230,7 +231,7 @@ TEST(GroundScale, MovesThePointsWithTheFramesThatSeeThem) {
 
 TEST(GroundScale, KeepsRotationsAndTheFirstPose) {
   Street street = StreetMaker({.frames = 300, .bend = 0.002}).Make();
-  street.segments[0].besides.assign(street.frames.size(), Matrix6d::Identity());
+  street.segments[0].besides.assign(street.frames.size(), geometry::Matrix6d::Identity());
   const Street before = street;
   ASSERT_TRUE(Scale(&street).found);
   EXPECT_NEAR(street.segments[0].besides[100](1, 1), std::pow(street.scale[100], 2), 0.1);
@@ -348,4 +349,4 @@ TEST(GroundScale, MakesADriveMetric) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::odometry

@@ -10,10 +10,10 @@
 #include "evo/odometry/map_writer.hpp"
 #include "evo/odometry/mapping_thread.hpp"
 #include "evo/odometry/resampling.hpp"
-#include "evo/odometry/segment_alignment.hpp"
+#include "odometry/mapping/segment_alignment.hpp"
 #include "odometry/synthetic_drive.hpp"
 
-namespace evo {
+namespace evo::odometry {
 namespace {
 
 using testing::DriveCamera;
@@ -32,9 +32,10 @@ TEST(Bootstrapper, FindsForwardMotion) {
     const auto drive = MakeDrive({.seconds = 2.0, .stop = false, .bumps = false, .seed = seed});
     const auto frames = BuildFrames(drive.tracks, DriveCamera());
     const Bootstrap bootstrap = FirstMap(frames);
-    const SE3 truth = drive.truth[bootstrap.last].T_world_cam.Inverse() * drive.truth[bootstrap.first].T_world_cam;
-    const SE3& found = bootstrap.T_cam_world.back();
-    EXPECT_LT(so3::Log(found.rotation() * truth.rotation().conjugate()).norm(), 0.01) << seed;
+    const geometry::SE3 truth =
+        drive.truth[bootstrap.last].T_world_cam.Inverse() * drive.truth[bootstrap.first].T_world_cam;
+    const geometry::SE3& found = bootstrap.T_cam_world.back();
+    EXPECT_LT(geometry::so3::Log(found.rotation() * truth.rotation().conjugate()).norm(), 0.01) << seed;
     const double cosine = found.translation().normalized().dot(truth.translation().normalized());
     EXPECT_GT(cosine, std::cos(0.1)) << seed;
     EXPECT_GE(bootstrap.points.size(), 25u) << seed;
@@ -59,15 +60,15 @@ std::vector<FrameMessage> Messages(int count) {
   const Bootstrap bootstrap = FirstMap(frames);
   std::vector<FrameMessage> messages;
   int key_frame = -1;
-  SE3 T_key_world;
+  geometry::SE3 T_key_world;
   for (int i = bootstrap.first; i < bootstrap.first + count; ++i) {
     const auto place = static_cast<std::size_t>(i - bootstrap.first);
     const double scale =
         bootstrap.T_cam_world.back().translation().norm() /
         (drive.truth[bootstrap.last].T_world_cam.translation() - drive.truth[bootstrap.first].T_world_cam.translation())
             .norm();
-    const SE3 relative = drive.truth[i].T_world_cam.Inverse() * drive.truth[bootstrap.first].T_world_cam;
-    const SE3 pose(relative.rotation(), scale * relative.translation());
+    const geometry::SE3 relative = drive.truth[i].T_world_cam.Inverse() * drive.truth[bootstrap.first].T_world_cam;
+    const geometry::SE3 pose(relative.rotation(), scale * relative.translation());
     FrameMessage message;
     message.index = i;
     message.frame = frames[i];
@@ -145,7 +146,7 @@ TEST(MappingThread, GivesTheSameUpdatesAsWithoutAThread) {
 TEST(SegmentAlignment, RecoversASimilarityDespiteOutliers) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-10.0, 10.0);
-  const SE3 T_world_local(so3::Exp({0.1, 0.7, -0.2}), Eigen::Vector3d(5, -1, 30));
+  const geometry::SE3 T_world_local(geometry::so3::Exp({0.1, 0.7, -0.2}), Eigen::Vector3d(5, -1, 30));
   std::vector<Point> points;
   std::unordered_map<std::int64_t, Eigen::Vector3d> old_points;
   for (int i = 0; i < 30; ++i) {
@@ -174,4 +175,4 @@ TEST(MapWriter, WritesPly) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::odometry

@@ -7,22 +7,23 @@
 #include <utility>
 #include <vector>
 
-namespace evo {
+namespace evo::odometry {
 namespace {
 
-Vector6d Twist(std::mt19937* random, double translation, double rotation) {
+geometry::Vector6d Twist(std::mt19937* random, double translation, double rotation) {
   std::normal_distribution<double> normal;
-  Vector6d twist;
+  geometry::Vector6d twist;
   for (int k = 0; k < 6; ++k) twist[k] = (k < 3 ? translation : rotation) * normal(*random);
   return twist;
 }
 
 TEST(MotionPrior, AConstantVelocityCostsNothing) {
   std::mt19937 random(1);
-  const Vector6d velocity = Twist(&random, 5.0, 1.0);
-  const SE3 here = SE3::Exp(Twist(&random, 3.0, 1.0));
-  const Vector6d change = MeasureVelocityChange(
-      {SE3::Exp(-0.02 * velocity) * here, here, SE3::Exp(0.05 * velocity) * here}, {0.0, 0.02, 0.07}, 1);
+  const geometry::Vector6d velocity = Twist(&random, 5.0, 1.0);
+  const geometry::SE3 here = geometry::SE3::Exp(Twist(&random, 3.0, 1.0));
+  const geometry::Vector6d change = MeasureVelocityChange(
+      {geometry::SE3::Exp(-0.02 * velocity) * here, here, geometry::SE3::Exp(0.05 * velocity) * here},
+      {0.0, 0.02, 0.07}, 1);
   EXPECT_LT(change.norm(), 1e-9);
 }
 
@@ -30,19 +31,19 @@ TEST(MotionPrior, DerivativesMatchFiniteDifferences) {
   constexpr double kStep = 1e-6;
   std::mt19937 random(2);
   for (int trial = 0; trial < 20; ++trial) {
-    const SE3 before = SE3::Exp(Twist(&random, 3.0, 1.0));
-    const SE3 here = SE3::Exp(Twist(&random, 0.3, 0.05)) * before;
-    const SE3 after = SE3::Exp(Twist(&random, 0.3, 0.05)) * here;
-    const std::vector<SE3> poses = {before, here, after};
+    const geometry::SE3 before = geometry::SE3::Exp(Twist(&random, 3.0, 1.0));
+    const geometry::SE3 here = geometry::SE3::Exp(Twist(&random, 0.3, 0.05)) * before;
+    const geometry::SE3 after = geometry::SE3::Exp(Twist(&random, 0.3, 0.05)) * here;
+    const std::vector<geometry::SE3> poses = {before, here, after};
     const std::vector<double> t = {0.0, 0.02, 0.05};
     const auto change = LinearizeVelocityChange(poses, t, 1);
     EXPECT_LT((change.value - MeasureVelocityChange(poses, t, 1)).norm(), 1e-9);
     for (const auto& [pose, by] : {std::pair(0, change.by_before), {1, change.by_here}, {2, change.by_after}}) {
-      Matrix6d numeric;
+      geometry::Matrix6d numeric;
       for (int k = 0; k < 6; ++k) {
         const auto moved = [&, pose = pose](double step) {
-          std::vector<SE3> with = poses;
-          with[pose] = SE3::Exp(step * Vector6d::Unit(k)) * with[pose];
+          std::vector<geometry::SE3> with = poses;
+          with[pose] = geometry::SE3::Exp(step * geometry::Vector6d::Unit(k)) * with[pose];
           return MeasureVelocityChange(with, t, 1);
         };
         numeric.col(k) = (moved(kStep) - moved(-kStep)) / (2.0 * kStep);
@@ -56,13 +57,13 @@ TEST(MotionPrior, MeasuresWhatIsUsual) {
   constexpr double kTranslation = 0.5;  // per s^1.5
   constexpr double kRotation = 0.1;
   std::mt19937 random(3);
-  std::vector<SE3> poses(1);
+  std::vector<geometry::SE3> poses(1);
   std::vector<double> t = {0.0};
-  Vector6d velocity = Vector6d::Zero();
+  geometry::Vector6d velocity = geometry::Vector6d::Zero();
   for (int i = 0; i < 2000; ++i) {
     const double step = i % 3 == 0 ? 0.04 : 0.02;
     if (i > 0) velocity += std::sqrt(0.5 * (step + t[i] - t[i - 1])) * Twist(&random, kTranslation, kRotation);
-    poses.push_back(SE3::Exp(step * velocity) * poses.back());
+    poses.push_back(geometry::SE3::Exp(step * velocity) * poses.back());
     t.push_back(t.back() + step);
   }
   const MotionPrior prior = MeasureMotion(poses, t, 2.0, 0.3);
@@ -72,9 +73,9 @@ TEST(MotionPrior, MeasuresWhatIsUsual) {
 }
 
 TEST(MotionPrior, NothingIsUsualForAFewPosesOrWithoutMotion) {
-  EXPECT_TRUE(MeasureMotion({SE3(), SE3()}, {0.0, 1.0}, 2.0, 0.3).t.empty());
-  EXPECT_TRUE(MeasureMotion(std::vector<SE3>(5), {0.0, 1.0, 2.0, 3.0, 4.0}, 2.0, 0.3).t.empty());
+  EXPECT_TRUE(MeasureMotion({geometry::SE3(), geometry::SE3()}, {0.0, 1.0}, 2.0, 0.3).t.empty());
+  EXPECT_TRUE(MeasureMotion(std::vector<geometry::SE3>(5), {0.0, 1.0, 2.0, 3.0, 4.0}, 2.0, 0.3).t.empty());
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::odometry

@@ -14,7 +14,7 @@
 #include "evo/core/error.hpp"
 #include "odometry/synthetic_drive.hpp"
 
-namespace evo {
+namespace evo::odometry {
 namespace {
 
 using testing::Drive;
@@ -30,10 +30,10 @@ struct Accuracy {
   double coverage = 0.0;          ///< share of the frames with a pose
 };
 
-Accuracy Evaluate(const Trajectory& estimate, const Trajectory& truth) {
-  std::map<TimeNs, SE3> by_time;
+Accuracy Evaluate(const geometry::Trajectory& estimate, const geometry::Trajectory& truth) {
+  std::map<TimeNs, geometry::SE3> by_time;
   for (const auto& pose : truth) by_time[pose.t] = pose.T_world_cam;
-  std::vector<SE3> a, b;  // relative to the first common pose
+  std::vector<geometry::SE3> a, b;  // relative to the first common pose
   for (const auto& pose : estimate) {
     a.push_back(estimate.front().T_world_cam.Inverse() * pose.T_world_cam);
     b.push_back(by_time.at(estimate.front().t).Inverse() * by_time.at(pose.t));
@@ -44,7 +44,7 @@ Accuracy Evaluate(const Trajectory& estimate, const Trajectory& truth) {
     ab += a[i].translation().dot(b[i].translation());
     aa += a[i].translation().squaredNorm();
     if (i > 0) path += (b[i].translation() - b[i - 1].translation()).norm();
-    const double angle = so3::Log(a[i].rotation().conjugate() * b[i].rotation()).norm();
+    const double angle = geometry::so3::Log(a[i].rotation().conjugate() * b[i].rotation()).norm();
     accuracy.rotation_degrees = std::max(accuracy.rotation_degrees, angle * 180.0 / M_PI);
   }
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -169,11 +169,11 @@ TEST(Odometry, SaysThatThereAreTooFewTracks) {
 }
 
 TEST(Odometry, ACalibrationOfAnotherSensorIsRefused) {
-  Calibration small = DriveCamera().calibration();
+  geometry::Calibration small = DriveCamera().calibration();
   small.width = 240;
   small.height = 180;
   try {
-    RunOdometry(MakeDrive({.seconds = 1.0}).tracks, Camera(small), {}, 1, kNoProgress);
+    RunOdometry(MakeDrive({.seconds = 1.0}).tracks, geometry::Camera(small), {}, 1, kNoProgress);
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::kInput);
@@ -199,19 +199,19 @@ TEST(Odometry, FollowsRealAsynchronousTracks) {
   std::ifstream calibration_file(folder + "calib.txt"), tracks_file(folder + "tracks.txt");
   std::ifstream truth_file(folder + "groundtruth.txt");
   if (!calibration_file || !tracks_file || !truth_file) GTEST_SKIP() << folder << " is not here";
-  Calibration calibration;
+  geometry::Calibration calibration;
   calibration.width = 240;
   calibration.height = 180;
   calibration_file >> calibration.fx >> calibration.fy >> calibration.cx >> calibration.cy;
   for (double& k : calibration.coefficients) calibration_file >> k;
-  Tracks tracks;
+  events::Tracks tracks;
   std::string stamp;
-  for (TrackObservation o; tracks_file >> o.id >> stamp >> o.x >> o.y;) {
+  for (events::TrackObservation o; tracks_file >> o.id >> stamp >> o.x >> o.y;) {
     o.t = ParseTime(stamp).value();
     tracks.push_back(o);
   }
-  std::ranges::sort(tracks, {}, [](const TrackObservation& o) { return std::pair(o.t, o.id); });
-  const auto result = RunOdometry(tracks, Camera(calibration), {}, 2, kNoProgress);
+  std::ranges::sort(tracks, {}, [](const events::TrackObservation& o) { return std::pair(o.t, o.id); });
+  const auto result = RunOdometry(tracks, geometry::Camera(calibration), {}, 2, kNoProgress);
   EXPECT_TRUE(result.resampled);
   ASSERT_GT(result.trajectory.size(), 140u);
 
@@ -239,4 +239,4 @@ TEST(Odometry, FollowsRealAsynchronousTracks) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::odometry

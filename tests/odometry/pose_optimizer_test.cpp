@@ -5,10 +5,10 @@
 #include <cmath>
 #include <random>
 
-namespace evo {
+namespace evo::odometry {
 namespace {
 
-SE3 Truth() { return {so3::Exp({0.05, -0.2, 0.02}), Eigen::Vector3d(0.4, -0.1, -3.0)}; }
+geometry::SE3 Truth() { return {geometry::so3::Exp({0.05, -0.2, 0.02}), Eigen::Vector3d(0.4, -0.1, -3.0)}; }
 
 std::vector<PoseObservation> Scene(int count, double noise_px, std::uint32_t seed) {
   std::mt19937 random(seed);
@@ -26,15 +26,15 @@ std::vector<PoseObservation> Scene(int count, double noise_px, std::uint32_t see
   return observations;
 }
 
-double Distance(const SE3& a, const SE3& b) { return (a * b.Inverse()).Log().norm(); }
+double Distance(const geometry::SE3& a, const geometry::SE3& b) { return (a * b.Inverse()).Log().norm(); }
 
 TEST(PoseOptimizer, JacobianMatchesFiniteDifferences) {
   for (const auto& observation : Scene(5, 20.0, 1)) {
     const auto jacobian = ReprojectionJacobian(Truth(), observation);
     for (int i = 0; i < 6; ++i) {
-      const Vector6d d = 1e-6 * Vector6d::Unit(i);
-      const Eigen::Vector2d numeric = (ReprojectionError(SE3::Exp(d) * Truth(), observation) -
-                                       ReprojectionError(SE3::Exp(-d) * Truth(), observation)) /
+      const geometry::Vector6d d = 1e-6 * geometry::Vector6d::Unit(i);
+      const Eigen::Vector2d numeric = (ReprojectionError(geometry::SE3::Exp(d) * Truth(), observation) -
+                                       ReprojectionError(geometry::SE3::Exp(-d) * Truth(), observation)) /
                                       2e-6;
       EXPECT_LT((jacobian.col(i) - numeric).norm(), 1e-4) << i;
     }
@@ -43,7 +43,8 @@ TEST(PoseOptimizer, JacobianMatchesFiniteDifferences) {
 
 TEST(PoseOptimizer, IsExactWithoutNoiseFromAPoorStart) {
   const PoseOptimizer optimizer({});
-  const SE3 start = SE3::Exp((Vector6d() << 0.5, -0.3, 0.6, 0.05, 0.04, -0.05).finished()) * Truth();
+  const geometry::SE3 start =
+      geometry::SE3::Exp((geometry::Vector6d() << 0.5, -0.3, 0.6, 0.05, 0.04, -0.05).finished()) * Truth();
   const auto estimate = optimizer.Optimize(Scene(50, 0.0, 2), start);
   EXPECT_EQ(estimate.inlier_count, 50);
   EXPECT_LT(Distance(estimate.T_cam_world, Truth()), 1e-7);
@@ -57,7 +58,8 @@ TEST(PoseOptimizer, WithstandsThirtyPercentOutliers) {
     std::uniform_real_distribution<double> far(0.05, 0.2);
     for (int i = 0; i < 24; ++i) observations[3 * i].x += Eigen::Vector2d(far(random), -far(random));
     const PoseOptimizer optimizer({});
-    const auto estimate = optimizer.Optimize(observations, SE3::Exp(Vector6d::Constant(0.02)) * Truth());
+    const auto estimate =
+        optimizer.Optimize(observations, geometry::SE3::Exp(geometry::Vector6d::Constant(0.02)) * Truth());
     EXPECT_LT(Distance(estimate.T_cam_world, Truth()), 0.05) << seed;
     EXPECT_GE(estimate.inlier_count, 52) << seed;
     EXPECT_LE(estimate.inlier_count, 58) << seed;
@@ -66,11 +68,11 @@ TEST(PoseOptimizer, WithstandsThirtyPercentOutliers) {
 }
 
 TEST(PoseOptimizer, CovarianceForetellsTheSpread) {
-  Matrix6d spread = Matrix6d::Zero(), foretold = spread;
+  geometry::Matrix6d spread = geometry::Matrix6d::Zero(), foretold = spread;
   const int trials = 200;
   for (int trial = 0; trial < trials; ++trial) {
     const auto estimate = PoseOptimizer({}).Optimize(Scene(60, 0.4, 100 + trial), Truth());
-    const Vector6d error = (estimate.T_cam_world * Truth().Inverse()).Log();
+    const geometry::Vector6d error = (estimate.T_cam_world * Truth().Inverse()).Log();
     spread += error * error.transpose() / trials;
     foretold += estimate.covariance / trials;
   }
@@ -85,4 +87,4 @@ TEST(PoseOptimizer, RefusesTooFewPoints) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::odometry

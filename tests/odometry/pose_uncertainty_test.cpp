@@ -13,7 +13,7 @@
 #include "evo/core/median.hpp"
 #include "odometry/bundle_drive.hpp"
 
-namespace evo {
+namespace evo::odometry {
 namespace {
 
 using testing::DriveBundle;
@@ -33,7 +33,7 @@ double NormalizedError(double noise_px, double drift_px, double expected_drift, 
   EXPECT_EQ(covariances.front().norm(), 0.0) << "it is fixed";
   double sum = 0.0;
   for (std::size_t i = 2; i < truth.T_cam_world.size(); ++i) {
-    const Vector6d error = (problem.T_cam_world[i] * truth.T_cam_world[i].Inverse()).Log();
+    const geometry::Vector6d error = (problem.T_cam_world[i] * truth.T_cam_world[i].Inverse()).Log();
     sum += error.dot(covariances[i].ldlt().solve(error)) / 6.0;
   }
   return sum / static_cast<double>(truth.T_cam_world.size() - 2);
@@ -66,7 +66,7 @@ double NormalizedErrorWithFreeScale(std::uint32_t seed) {
   const BundleOptions options{.iterations = 30, .loss_px = 1.0};
   AdjustBundle(options, &problem);
   const auto covariances = PoseUncertainty(kIndependent, options, problem).Covariances(0, true);
-  const auto centre = [](const SE3& T_cam_world) { return T_cam_world.Inverse().translation(); };
+  const auto centre = [](const geometry::SE3& T_cam_world) { return T_cam_world.Inverse().translation(); };
   double products = 0.0, squares = 0.0;
   for (std::size_t i = 0; i < truth.T_cam_world.size(); ++i) {
     products += centre(truth.T_cam_world[i]).dot(centre(problem.T_cam_world[i]));
@@ -74,7 +74,7 @@ double NormalizedErrorWithFreeScale(std::uint32_t seed) {
   }
   double sum = 0.0;
   for (std::size_t i = 1; i < truth.T_cam_world.size(); ++i) {
-    const SE3& pose = problem.T_cam_world[i];
+    const geometry::SE3& pose = problem.T_cam_world[i];
     const Eigen::Vector3d error =
         pose.RotationMatrix() * (centre(pose) - products / squares * centre(truth.T_cam_world[i]));
     sum += error.dot(covariances[i].topLeftCorner<3, 3>().ldlt().solve(error)) / 3.0;
@@ -128,11 +128,11 @@ TEST(PoseUncertainty, WhatTurnsTheWholeImageTurnsThePath) {
   for (auto& observation : problem.observations) {
     const double since_birth = turned[observation.frame] - turned[problem.points[observation.point].anchor];
     const Eigen::Vector3d angle = since_birth * Eigen::Vector3d(1.0, -1.0, 1.0);
-    observation.x = (so3::Exp(angle) * observation.x.homogeneous()).hnormalized();
+    observation.x = (geometry::so3::Exp(angle) * observation.x.homogeneous()).hnormalized();
   }
   AdjustBundle({.iterations = 30}, &problem);
   const auto covariances = PoseUncertainty(common, {}, problem).Covariances(0, false);
-  const Vector6d error = (problem.T_cam_world[39] * truth.T_cam_world[39].Inverse()).Log();
+  const geometry::Vector6d error = (problem.T_cam_world[39] * truth.T_cam_world[39].Inverse()).Log();
   // Each axis has turned by about its standard deviation.
   for (int k = 3; k < 6; ++k) {
     EXPECT_NEAR(std::abs(error[k]), std::sqrt(covariances[39](k, k)), 0.3 * std::abs(error[k])) << k;
@@ -151,8 +151,8 @@ TEST(PoseUncertainty, AScaleFromElsewhereReplacesTheTracks) {
   PoseUncertainty uncertainty({}, {}, problem);
   const auto by_tracks = uncertainty.Covariances(0, false);
   // Twice as large from now on.
-  std::vector<SE3> poses;
-  for (const SE3& pose : problem.T_cam_world) poses.emplace_back(pose.rotation(), 2.0 * pose.translation());
+  std::vector<geometry::SE3> poses;
+  for (const geometry::SE3& pose : problem.T_cam_world) poses.emplace_back(pose.rotation(), 2.0 * pose.translation());
   constexpr double kError = 0.01;
   constexpr double kReach = 4.0;
   uncertainty.HoldScale(poses, kError, kReach);
@@ -162,7 +162,7 @@ TEST(PoseUncertainty, AScaleFromElsewhereReplacesTheTracks) {
   // exponentially to both sides.
   const double expected = kError * std::sqrt(2.0 * kReach * way);
   const Eigen::Vector3d along = (poses[39] * poses[0].Inverse()).translation().normalized();
-  const auto deviation = [](const Matrix6d& covariance, const Eigen::Vector3d& direction) {
+  const auto deviation = [](const geometry::Matrix6d& covariance, const Eigen::Vector3d& direction) {
     return std::sqrt(direction.dot(covariance.topLeftCorner<3, 3>() * direction));
   };
   EXPECT_NEAR(deviation(held[39], along), expected, 0.3 * expected);
@@ -209,4 +209,4 @@ TEST(PoseUncertainty, EndsOfFewBadTracksAreNotCertain) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::odometry

@@ -9,13 +9,13 @@
 #include "evo/core/error.hpp"
 #include "odometry/synthetic_drive.hpp"
 
-namespace evo {
+namespace evo::odometry {
 namespace {
 
 /// A track that moves with `speed` px/s along x, seen at random instants about `interval_s` apart, quantised to whole
 /// pixels if asked for.
 void AddTrack(std::int64_t id, double speed, double interval_s, double from_s, double to_s, bool quantised,
-              std::mt19937* random, Tracks* tracks) {
+              std::mt19937* random, events::Tracks* tracks) {
   std::uniform_real_distribution<double> jitter(0.5, 1.5);
   for (double t = from_s; t < to_s; t += interval_s * jitter(*random)) {
     const double x = 20.0 + speed * t;
@@ -23,14 +23,14 @@ void AddTrack(std::int64_t id, double speed, double interval_s, double from_s, d
   }
 }
 
-void Sort(Tracks* tracks) {
-  std::ranges::sort(*tracks, {}, [](const TrackObservation& o) { return std::pair(o.t, o.id); });
+void Sort(events::Tracks* tracks) {
+  std::ranges::sort(*tracks, {}, [](const events::TrackObservation& o) { return std::pair(o.t, o.id); });
 }
 
 TEST(Resampling, TellsFramesFromAsynchronousTracks) {
   EXPECT_TRUE(AreSynchronous(testing::MakeDrive({.seconds = 0.5}).tracks));
   std::mt19937 random(1);
-  Tracks tracks;
+  events::Tracks tracks;
   for (int id = 0; id < 50; ++id) AddTrack(id, 100, 0.002, 0, 0.5, false, &random, &tracks);
   Sort(&tracks);
   EXPECT_FALSE(AreSynchronous(tracks));
@@ -38,10 +38,10 @@ TEST(Resampling, TellsFramesFromAsynchronousTracks) {
 
 TEST(Resampling, IsExactOnStraightMotionAndNeverExtrapolates) {
   std::mt19937 random(2);
-  Tracks tracks;
+  events::Tracks tracks;
   for (int id = 0; id < 20; ++id) AddTrack(id, 80, 0.003, 0.01 * id, 1.0, false, &random, &tracks);
   Sort(&tracks);
-  const Tracks resampled = Resample(tracks, {});
+  const events::Tracks resampled = Resample(tracks, {});
   ASSERT_GT(resampled.size(), 500u);
   for (const auto& o : resampled) {
     EXPECT_NEAR(o.x, 20.0 + 80.0 * ToSeconds(o.t), 1e-6);
@@ -54,12 +54,12 @@ TEST(Resampling, IsExactOnStraightMotionAndNeverExtrapolates) {
 
 TEST(Resampling, FittedLineBeatsInterpolationOfQuantisedPositions) {
   std::mt19937 random(3);
-  Tracks tracks;
+  events::Tracks tracks;
   for (int id = 0; id < 20; ++id) AddTrack(id, 300 + id, 0.002, 0, 1.0, true, &random, &tracks);
   Sort(&tracks);
   const auto rms = [&](double window) {
     double sum = 0.0;
-    const Tracks resampled = Resample(tracks, {.fit_window_s = window});
+    const events::Tracks resampled = Resample(tracks, {.fit_window_s = window});
     for (const auto& o : resampled) {
       sum += std::pow(o.x - (20.0 + (300.0 + static_cast<double>(o.id)) * ToSeconds(o.t)), 2);
     }
@@ -70,7 +70,7 @@ TEST(Resampling, FittedLineBeatsInterpolationOfQuantisedPositions) {
 
 TEST(Resampling, LeavesLongGapsOpen) {
   std::mt19937 random(4);
-  Tracks tracks;
+  events::Tracks tracks;
   AddTrack(1, 50, 0.003, 0.0, 0.4, false, &random, &tracks);
   AddTrack(1, 50, 0.003, 0.8, 1.2, false, &random, &tracks);
   for (const auto& o : Resample(tracks, {.max_gap_s = 0.2})) {
@@ -81,16 +81,17 @@ TEST(Resampling, LeavesLongGapsOpen) {
 TEST(Resampling, PassesOverAGapOfManyYears) {
   const TimeNs late = 1'000'000'000 * kNsPerSecond;
   const TimeNs ms = 1'000'000;
-  const Tracks tracks{{1, 0, 5, 5}, {1, 50 * ms, 5, 5}, {1, late, 6, 5}, {1, late + 50 * ms, 6, 5}};
-  const Tracks resampled = Resample(tracks, {.frame_interval_s = 0.025});
+  const events::Tracks tracks{{1, 0, 5, 5}, {1, 50 * ms, 5, 5}, {1, late, 6, 5}, {1, late + 50 * ms, 6, 5}};
+  const events::Tracks resampled = Resample(tracks, {.frame_interval_s = 0.025});
   ASSERT_EQ(resampled.size(), 6u);
   EXPECT_EQ(resampled[2].t, 50 * ms);
   EXPECT_EQ(resampled[3].t, late);
 }
 
 TEST(Resampling, FramesHoldUndistortedFeaturesWithTheLensJacobian) {
-  const Camera camera = testing::DriveCamera();
-  const Tracks tracks = {{3, 10, 300.0, 40.0}, {7, 10, 50.0, 200.0}, {7, 10, 50.0, 200.0}, {3, 20, 301.0, 41.0}};
+  const geometry::Camera camera = testing::DriveCamera();
+  const events::Tracks tracks = {
+      {3, 10, 300.0, 40.0}, {7, 10, 50.0, 200.0}, {7, 10, 50.0, 200.0}, {3, 20, 301.0, 41.0}};
   const auto frames = BuildFrames(tracks, camera);
   ASSERT_EQ(frames.size(), 2u);
   ASSERT_EQ(frames[0].features.size(), 2u);  // the repeated sighting counts once
@@ -105,9 +106,9 @@ TEST(Resampling, FramesHoldUndistortedFeaturesWithTheLensJacobian) {
 }
 
 TEST(Resampling, RefusesTracksOffTheSensor) {
-  const Tracks tracks = {{1, 0, 10, 10}, {2, 0, 400, 10}};
+  const events::Tracks tracks = {{1, 0, 10, 10}, {2, 0, 400, 10}};
   EXPECT_THROW(BuildFrames(tracks, testing::DriveCamera()), Error);
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::odometry

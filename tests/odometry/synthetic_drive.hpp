@@ -5,11 +5,11 @@
 #include <random>
 #include <vector>
 
+#include "evo/events/tracks.hpp"
 #include "evo/geometry/camera.hpp"
 #include "evo/geometry/trajectory.hpp"
-#include "evo/io/tracks.hpp"
 
-namespace evo::testing {
+namespace evo::odometry::testing {
 
 struct DriveOptions {
   double seconds = 12.0;
@@ -25,20 +25,26 @@ struct DriveOptions {
 };
 
 struct Drive {
-  Tracks tracks;
-  Trajectory truth;  ///< T_world_cam at every frame, metres
+  events::Tracks tracks;
+  geometry::Trajectory truth;  ///< T_world_cam at every frame, metres
 };
 
-inline Camera DriveCamera() {
-  return Camera(
-      {Distortion::kEquidistant, 346, 260, 226.38, 226.15, 173.65, 133.73, {-0.0480, 0.01133, -0.05538, 0.0215, 0.0}});
+inline geometry::Camera DriveCamera() {
+  return geometry::Camera({geometry::Distortion::kEquidistant,
+                           346,
+                           260,
+                           226.38,
+                           226.15,
+                           173.65,
+                           133.73,
+                           {-0.0480, 0.01133, -0.05538, 0.0215, 0.0}});
 }
 
 /// A car in a gently curving street: ground and facades 3 to 40 m away, the camera 1.5 m above the ground.
 inline Drive MakeDrive(const DriveOptions& options) {
   constexpr double kInterval = 0.025;
   constexpr double kHeight = 1.5;
-  const Camera camera = DriveCamera();
+  const geometry::Camera camera = DriveCamera();
   std::mt19937 random(options.seed);
   std::normal_distribution<double> normal(0.0, 1.0);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -70,9 +76,9 @@ inline Drive MakeDrive(const DriveOptions& options) {
     }
     heading += 0.009 * std::sin(2.0 * M_PI * t / 12.0) * kInterval * speed;
     position += kInterval * speed * Eigen::Vector3d(std::sin(heading), 0.0, std::cos(heading));
-    const Eigen::Quaterniond rotation = so3::Exp({0, heading, 0}) * so3::Exp({pitch, 0, 0});
-    const SE3 T_world_cam(rotation, position + Eigen::Vector3d(0, lift, 0));
-    const SE3 T_cam_world = T_world_cam.Inverse();
+    const Eigen::Quaterniond rotation = geometry::so3::Exp({0, heading, 0}) * geometry::so3::Exp({pitch, 0, 0});
+    const geometry::SE3 T_world_cam(rotation, position + Eigen::Vector3d(0, lift, 0));
+    const geometry::SE3 T_cam_world = T_world_cam.Inverse();
     const TimeNs stamp = start + i * FromSeconds(kInterval);
     drive.truth.push_back({stamp, T_world_cam});
     if (std::abs(t - 0.5 * options.seconds) < 0.5 * ToSeconds(options.blackout)) {
@@ -109,4 +115,4 @@ inline Drive MakeDrive(const DriveOptions& options) {
   return drive;
 }
 
-}  // namespace evo::testing
+}  // namespace evo::odometry::testing

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace evo::testing {
+namespace evo::odometry::testing {
 
 /// What errors with that drift and unit noise vary and covary like, one coordinate.
 inline Eigen::MatrixXd TrackCovariance(double drift, const std::vector<double>& magnifications) {
@@ -22,4 +22,4 @@ inline Eigen::MatrixXd TrackCovariance(double drift, const std::vector<double>& 
   return covariance;
 }
 
-}  // namespace evo::testing
+}  // namespace evo::odometry::testing

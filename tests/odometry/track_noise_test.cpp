@@ -1,4 +1,4 @@
-#include "evo/odometry/track_noise.hpp"
+#include "odometry/bundle/track_noise.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "odometry/track_covariance.hpp"
 
-namespace evo {
+namespace evo::odometry {
 namespace {
 
 std::vector<double> Growing(int sightings, double growth) {
@@ -79,4 +79,4 @@ TEST(TrackNoise, InnovationsAreIndependentAndOfOneSize) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::odometry

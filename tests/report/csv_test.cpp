@@ -1,9 +1,9 @@
 #include "evo/report/csv.hpp"
 
 #include "evo/core/error.hpp"
-#include "fixtures.hpp"
+#include "report/fixtures.hpp"
 
-namespace evo {
+namespace evo::report {
 namespace {
 
 class CsvTest : public ReportTest {
@@ -69,4 +69,4 @@ TEST_F(CsvTest, AMissingFileIsAnInputError) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::report

@@ -8,9 +8,9 @@
 
 #include "evo/core/error.hpp"
 #include "evo/report/png.hpp"
-#include "fixtures.hpp"
+#include "report/fixtures.hpp"
 
-namespace evo {
+namespace evo::report {
 namespace {
 
 constexpr Color kWhite{255, 255, 255};
@@ -54,7 +54,7 @@ TEST(Draw, WhatLiesOffTheCanvasIsCut) {
 }
 
 TEST(Draw, EventsFillTheirPixelInTheColourOfTheLast) {
-  EventColumns events;
+  events::EventColumns events;
   events.push_back(0, 1, 2, 1);
   events.push_back(1, 1, 2, -1);
   events.push_back(2, 3, 0, 1);
@@ -72,7 +72,7 @@ TEST(Draw, EventsFillTheirPixelInTheColourOfTheLast) {
 }
 
 TEST(Draw, TracksAliveHaveADotAndATail) {
-  Tracks tracks;
+  events::Tracks tracks;
   for (int i = 0; i <= 10; ++i) {
     if (i <= 5) tracks.push_back({1, i * 25'000'000, 5.0 + 2 * i, 10.0});  // over after frame 5
     tracks.push_back({2, i * 25'000'000, 5.0 + 4 * i, 30.0});
@@ -90,11 +90,11 @@ TEST(Draw, TracksAliveHaveADotAndATail) {
 }
 
 TEST(Draw, ATrackHasItsColourOnEventsAndInEveryPanelOfASheet) {
-  EventColumns events;
+  events::EventColumns events;
   for (std::uint16_t x = 0; x < 40; ++x) {
     for (std::uint16_t y = 0; y < 30; ++y) events.push_back(x, x, y, x % 2 ? 1 : -1);
   }
-  Tracks tracks;
+  events::Tracks tracks;
   for (int i = 0; i < 4; ++i) {
     for (const int id : {5, 6}) tracks.push_back({id, i * 25'000'000, 5.0 + 8 * i, 10.0 * (id - 4)});
   }
@@ -171,4 +171,4 @@ TEST_F(PngTest, CannotWriteIsAnOutputError) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::report

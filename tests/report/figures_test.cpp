@@ -7,9 +7,9 @@
 #include <span>
 #include <sstream>
 
-#include "fixtures.hpp"
+#include "report/fixtures.hpp"
 
-namespace evo {
+namespace evo::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -91,10 +91,12 @@ TEST_F(FiguresTest, GapsAreShadedAndRestartsMarked) {
 }
 
 TEST_F(FiguresTest, AnEstimateThatStopsEarlyShowsIt) {
-  Trajectory truth;
-  for (int i = 0; i <= 100; ++i) truth.push_back({i * (kNsPerSecond / 10), SE3({1, 0, 0, 0}, {0, 0, 1.0 * i})});
-  const Trajectory estimate(truth.begin() + 20, truth.begin() + 60);
-  const auto evaluation = Evaluate(truth, estimate, ParseAlignments("none"), {}, EvaluationOptions());
+  geometry::Trajectory truth;
+  for (int i = 0; i <= 100; ++i)
+    truth.push_back({i * (kNsPerSecond / 10), geometry::SE3({1, 0, 0, 0}, {0, 0, 1.0 * i})});
+  const geometry::Trajectory estimate(truth.begin() + 20, truth.begin() + 60);
+  const auto evaluation =
+      evaluation::Evaluate(truth, estimate, evaluation::ParseAlignments("none"), {}, evaluation::EvaluationOptions());
   const auto& result = evaluation.alignments[0];
   for (const std::string& script : {ErrorFigure("e", evaluation, result, ErrorAxis::kTime, {}).script,
                                     AxesFigure("e", evaluation, result, {}).script}) {
@@ -127,13 +129,14 @@ TEST_F(FiguresTest, LiveFeaturesCountEveryFrame) {
 
 TEST_F(FiguresTest, APoseAloneBetweenGapsIsSeenAmongManyOthers) {
   if (!HaveGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
-  Trajectory truth;
-  Trajectory estimate;
+  geometry::Trajectory truth;
+  geometry::Trajectory estimate;
   for (int i = 0; i <= 400; ++i) {
-    truth.push_back({i * (kNsPerSecond / 10), SE3({1, 0, 0, 0}, {0, 0, 1.0 * i})});
+    truth.push_back({i * (kNsPerSecond / 10), geometry::SE3({1, 0, 0, 0}, {0, 0, 1.0 * i})});
     if (i <= 100 || i == 200 || i >= 300) estimate.push_back(truth.back());
   }
-  const auto evaluation = Evaluate(truth, estimate, ParseAlignments("none"), {}, EvaluationOptions());
+  const auto evaluation =
+      evaluation::Evaluate(truth, estimate, evaluation::ParseAlignments("none"), {}, evaluation::EvaluationOptions());
   const auto& result = evaluation.alignments[0];
   const auto dots = [&](const std::string& name, const Figure& figure) {
     Gnuplot(folder).Draw(name, figure);
@@ -153,18 +156,19 @@ TEST_F(FiguresTest, APoseAloneBetweenGapsIsSeenAmongManyOthers) {
 }
 
 TEST_F(FiguresTest, LongCurvesAreThinnedInThePictureOnly) {
-  Trajectory truth;
+  geometry::Trajectory truth;
   for (TimeNs i = 0; i < 12'000; ++i)
-    truth.push_back({i * 10'000'000, SE3({1, 0, 0, 0}, {0, 0, 0.1 * static_cast<double>(i)})});
-  const auto evaluation = Evaluate(truth, truth, ParseAlignments("none"), {}, EvaluationOptions());
+    truth.push_back({i * 10'000'000, geometry::SE3({1, 0, 0, 0}, {0, 0, 0.1 * static_cast<double>(i)})});
+  const auto evaluation =
+      evaluation::Evaluate(truth, truth, evaluation::ParseAlignments("none"), {}, evaluation::EvaluationOptions());
   const Figure figure = ErrorFigure("e", evaluation, evaluation.alignments[0], ErrorAxis::kTime, {});
   EXPECT_EQ(Blocks(figure.data)[0].size(), 12'000u);
   EXPECT_NE(figure.script.find("data every 3 using"), std::string::npos) << figure.script;
 }
 
 /// All figures of one evaluation and of its tracks; true if gnuplot drew every one of them without a word.
-bool DrawsAll(const fs::path& folder, const Evaluation& evaluation, std::span<const TimeNs> restarts,
-              const LifetimeStatistics& lifetimes, std::span<const LiveFeatures> live) {
+bool DrawsAll(const fs::path& folder, const evaluation::Evaluation& evaluation, std::span<const TimeNs> restarts,
+              const evaluation::LifetimeStatistics& lifetimes, std::span<const LiveFeatures> live) {
   const auto& result = evaluation.alignments[0];
   const std::vector<std::pair<std::string, Figure>> figures{
       {"trajectory", TrajectoryFigure("trajectory", evaluation, result)},
@@ -189,7 +193,7 @@ bool DrawsAll(const fs::path& folder, const Evaluation& evaluation, std::span<co
 
 TEST_F(FiguresTest, DrawsSvgAndPdfWithTheSameBytesEachTime) {
   if (!HaveGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
-  LifetimeStatistics lifetimes;
+  evaluation::LifetimeStatistics lifetimes;
   lifetimes.histogram = {{3, 5, 4}, {5, 7, 1}};
   lifetimes.histogram_seconds = {{0.0, 0.05, 4}, {0.05, 0.1, 1}};
   const std::vector<TimeNs> restarts{5 * kNsPerSecond, 7 * kNsPerSecond};
@@ -208,20 +212,21 @@ TEST_F(FiguresTest, DrawsSvgAndPdfWithTheSameBytesEachTime) {
 }
 
 /// `count` poses from `offset` on, 0.1 s and `step` apart, each off by `error` m to the right.
-Evaluation EvaluateLine(int count, double step, double error, double offset = 0.0) {
-  Trajectory truth;
-  Trajectory estimate;
+evaluation::Evaluation EvaluateLine(int count, double step, double error, double offset = 0.0) {
+  geometry::Trajectory truth;
+  geometry::Trajectory estimate;
   for (int i = 0; i < count; ++i) {
     const TimeNs t = i * (kNsPerSecond / 10);
-    truth.push_back({t, SE3({1, 0, 0, 0}, {offset, offset, offset + step * i})});
-    estimate.push_back({t, SE3({1, 0, 0, 0}, {offset + error * i, offset, offset + step * i})});
+    truth.push_back({t, geometry::SE3({1, 0, 0, 0}, {offset, offset, offset + step * i})});
+    estimate.push_back({t, geometry::SE3({1, 0, 0, 0}, {offset + error * i, offset, offset + step * i})});
   }
-  return Evaluate(truth, estimate, ParseAlignments("none"), {}, EvaluationOptions());
+  return evaluation::Evaluate(truth, estimate, evaluation::ParseAlignments("none"), {},
+                              evaluation::EvaluationOptions());
 }
 
 TEST_F(FiguresTest, DrawsWhatIsDegenerateOrExtreme) {
   if (!HaveGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
-  const std::pair<const char*, Evaluation> cases[] = {
+  const std::pair<const char*, evaluation::Evaluation> cases[] = {
       {"one pose", EvaluateLine(1, 0.0, 0.0)},         {"two poses", EvaluateLine(2, 1.0, 0.0)},
       {"standstill", EvaluateLine(50, 0.0, 0.0)},      {"straight line", EvaluateLine(50, 1.0, 0.0)},
       {"tiny errors", EvaluateLine(50, 1.0, 1e-9)},    {"huge errors", EvaluateLine(50, 1.0, 1e5)},
@@ -236,7 +241,7 @@ TEST_F(FiguresTest, MissingGnuplotLeavesDataAndScript) {
   const std::string path = std::getenv("PATH");
   ::setenv("PATH", folder.c_str(), 1);
   Gnuplot gnuplot(folder / "plots");
-  LifetimeStatistics statistics;
+  evaluation::LifetimeStatistics statistics;
   statistics.histogram = {{3, 4, 1}};
   gnuplot.Draw("lifetime", LifetimeFigure("lifetime", statistics));
   gnuplot.Draw("again", LifetimeFigure("again", statistics));
@@ -248,4 +253,4 @@ TEST_F(FiguresTest, MissingGnuplotLeavesDataAndScript) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::report

@@ -10,7 +10,7 @@
 
 #include "evo/evaluation/evaluation.hpp"
 
-namespace evo {
+namespace evo::report {
 
 /// A folder of its own for each test.
 class ReportTest : public ::testing::Test {
@@ -31,15 +31,16 @@ class ReportTest : public ::testing::Test {
 };
 
 /// 10 s along z at 10 m/s; the estimate is 2 % short and lacks the second from 4 s to 5 s.
-inline Evaluation SampleEvaluation() {
-  Trajectory truth;
-  Trajectory estimate;
+inline evaluation::Evaluation SampleEvaluation() {
+  geometry::Trajectory truth;
+  geometry::Trajectory estimate;
   for (int i = 0; i <= 200; ++i) {
     const TimeNs t = i * (kNsPerSecond / 20);
-    truth.push_back({t, SE3({1, 0, 0, 0}, {0, 0, 0.5 * i})});
-    if (i <= 80 || i >= 100) estimate.push_back({t, SE3({1, 0, 0, 0}, {0, 0, 0.49 * i})});
+    truth.push_back({t, geometry::SE3({1, 0, 0, 0}, {0, 0, 0.5 * i})});
+    if (i <= 80 || i >= 100) estimate.push_back({t, geometry::SE3({1, 0, 0, 0}, {0, 0, 0.49 * i})});
   }
-  return Evaluate(truth, estimate, ParseAlignments("none,origin"), {}, EvaluationOptions());
+  return evaluation::Evaluate(truth, estimate, evaluation::ParseAlignments("none,origin"), {},
+                              evaluation::EvaluationOptions());
 }
 
-}  // namespace evo
+}  // namespace evo::report

@@ -6,15 +6,15 @@
 
 #include "evo/core/error.hpp"
 #include "evo/core/output_file.hpp"
-#include "fixtures.hpp"
+#include "report/fixtures.hpp"
 
-namespace evo {
+namespace evo::report {
 namespace {
 
 using LatexTablesTest = ReportTest;
 
 TEST_F(LatexTablesTest, LifetimesAsInThePapersTable2) {
-  LifetimeStatistics statistics;
+  evaluation::LifetimeStatistics statistics;
   statistics.frames = 480;
   statistics.frame_interval_s = 0.025;
   statistics.tracks = 1234;
@@ -73,10 +73,10 @@ TEST_F(LatexTablesTest, EachAlignmentHasItsBlock) {
 }
 
 TEST_F(LatexTablesTest, WhatIsNotDeterminedIsADash) {
-  Trajectory still;
-  for (int i = 0; i < 5; ++i) still.push_back({i * kNsPerSecond / 10, SE3()});
-  const std::string table =
-      ErrorTable("still", Evaluate(still, still, ParseAlignments("none"), {}, EvaluationOptions()));
+  geometry::Trajectory still;
+  for (int i = 0; i < 5; ++i) still.push_back({i * kNsPerSecond / 10, geometry::SE3()});
+  const std::string table = ErrorTable("still", evaluation::Evaluate(still, still, evaluation::ParseAlignments("none"),
+                                                                     {}, evaluation::EvaluationOptions()));
   EXPECT_NE(table.find("Relative error, largest/path (\\%) & -- & -- & -- \\\\"), std::string::npos) << table;
   EXPECT_NE(table.find("Mean of error/distance travelled (\\%) & -- & -- & -- \\\\"), std::string::npos) << table;
   EXPECT_EQ(table.find("nan"), std::string::npos) << table;
@@ -106,4 +106,4 @@ TEST_F(LatexTablesTest, CannotWriteIsAnOutputError) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::report

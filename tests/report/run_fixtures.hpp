@@ -8,9 +8,9 @@
 #include "evo/report/manifest.hpp"
 #include "evo/report/run_table.hpp"
 #include "evo/report/tables.hpp"
-#include "fixtures.hpp"
+#include "report/fixtures.hpp"
 
-namespace evo {
+namespace evo::report {
 
 /// Makes the output folders of runs.
 class RunsTest : public ReportTest {
@@ -52,7 +52,7 @@ class RunsTest : public ReportTest {
 
   std::filesystem::path TrackedRun(const std::string& name) const {
     WriteRunManifest(name, {});
-    LifetimeStatistics statistics;
+    evaluation::LifetimeStatistics statistics;
     statistics.tracks = 2;
     statistics.in_frames = {4.0, 1.0, 4.0, 5.0};
     statistics.in_seconds = {0.1, 0.025, 0.1, 0.125};
@@ -78,4 +78,4 @@ class RunsTest : public ReportTest {
   }
 };
 
-}  // namespace evo
+}  // namespace evo::report

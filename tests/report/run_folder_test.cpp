@@ -1,8 +1,8 @@
 #include "evo/report/run_folder.hpp"
 
-#include "run_fixtures.hpp"
+#include "report/run_fixtures.hpp"
 
-namespace evo {
+namespace evo::report {
 namespace {
 
 using RunFolderTest = RunsTest;
@@ -105,4 +105,4 @@ TEST_F(RunFolderTest, CorruptFilesAreRefusedWithTheirLine) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::report

@@ -1,8 +1,8 @@
 #include "evo/report/run_page.hpp"
 
-#include "run_fixtures.hpp"
+#include "report/run_fixtures.hpp"
 
-namespace evo {
+namespace evo::report {
 namespace {
 
 class RunPageTest : public RunsTest {
@@ -103,4 +103,4 @@ TEST_F(RunPageTest, TheSameRunsGiveTheSameBytes) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::report

@@ -1,9 +1,9 @@
 #include "evo/report/run_table.hpp"
 
-#include "evo/report/latex.hpp"
-#include "run_fixtures.hpp"
+#include "report/run_fixtures.hpp"
+#include "report/tables/latex.hpp"
 
-namespace evo {
+namespace evo::report {
 namespace {
 
 using RunTableTest = RunsTest;
@@ -107,4 +107,4 @@ TEST(Latex, EscapesWhatIsSpecial) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::report

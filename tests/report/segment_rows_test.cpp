@@ -1,25 +1,25 @@
-#include "evo/report/segment_rows.hpp"
+#include "report/tables/segment_rows.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace evo {
+namespace evo::report {
 namespace {
 
 /// 10 s along z at 10 m/s, 0.5 m a pose; the estimate is 2 % short.
-Evaluation Drive(const std::string& kitti_lengths, const std::string& subtrajectory_lengths) {
-  Trajectory truth;
-  Trajectory estimate;
+evaluation::Evaluation Drive(const std::string& kitti_lengths, const std::string& subtrajectory_lengths) {
+  geometry::Trajectory truth;
+  geometry::Trajectory estimate;
   for (int i = 0; i <= 200; ++i) {
     const TimeNs t = i * (kNsPerSecond / 20);
-    truth.push_back({t, SE3({1, 0, 0, 0}, {0, 0, 0.5 * i})});
-    estimate.push_back({t, SE3({1, 0, 0, 0}, {0, 0, 0.49 * i})});
+    truth.push_back({t, geometry::SE3({1, 0, 0, 0}, {0, 0, 0.5 * i})});
+    estimate.push_back({t, geometry::SE3({1, 0, 0, 0}, {0, 0, 0.49 * i})});
   }
-  EvaluationOptions options;
+  evaluation::EvaluationOptions options;
   options.segments.kitti_lengths_m = kitti_lengths;
   options.segments.subtrajectory_lengths = subtrajectory_lengths;
-  return Evaluate(truth, estimate, ParseAlignments("none,origin"), {}, options);
+  return evaluation::Evaluate(truth, estimate, evaluation::ParseAlignments("none,origin"), {}, options);
 }
 
 std::string Text(const TableRow& row, std::size_t column) { return std::get<std::string>(row.at(column).second); }
@@ -63,11 +63,12 @@ TEST(SegmentRows, AreOneForEachQuantityLengthAndAlignment) {
 TEST(SegmentRows, AreLeftOutWhereNoLengthFits) { EXPECT_TRUE(SegmentMetricRows("day", Drive("500", "500m")).empty()); }
 
 TEST(SegmentRows, KnowACameraThatStands) {
-  const Trajectory still = {{0, SE3()}, {kNsPerSecond / 10, SE3()}};
-  const auto evaluation = Evaluate(still, still, ParseAlignments("none"), {}, EvaluationOptions());
+  const geometry::Trajectory still = {{0, geometry::SE3()}, {kNsPerSecond / 10, geometry::SE3()}};
+  const auto evaluation =
+      evaluation::Evaluate(still, still, evaluation::ParseAlignments("none"), {}, evaluation::EvaluationOptions());
   EXPECT_TRUE(SegmentMetricRows("still", evaluation).empty());
   EXPECT_TRUE(std::isnan(evaluation.alignments[0].segments.local_scale.at(1).ratio));
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::report

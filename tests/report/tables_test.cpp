@@ -10,9 +10,9 @@
 #include "evo/core/error.hpp"
 #include "evo/report/manifest.hpp"
 #include "evo/report/metric_rows.hpp"
-#include "fixtures.hpp"
+#include "report/fixtures.hpp"
 
-namespace evo {
+namespace evo::report {
 namespace {
 
 using TablesTest = ReportTest;
@@ -80,14 +80,14 @@ TEST_F(TablesTest, MetricsHaveEveryDigit) {
   int rows = 0;
   for (; std::getline(lines, line); ++rows) EXPECT_EQ(std::ranges::count(line, ','), 15) << line;
   EXPECT_EQ(rows, 2 * (5 + 3 * 7 + 5 * 6));
-  const Statistics third{1, 1.0 / 3.0, 1e-20, 0.0, 0.0, 0.0, 0.0, 0.0};
+  const evaluation::Statistics third{1, 1.0 / 3.0, 1e-20, 0.0, 0.0, 0.0, 0.0, 0.0};
   WriteCsv(folder / "one.csv", {MetricRow("a", "b", "c", "d", "m", 0.1, "s", "all", third)}, Digits::kAll);
   EXPECT_NE(ReadFile(folder / "one.csv").find("\na,b,c,d,m,0.1,s,all,1,0.3333333333333333,1e-20,0,0,0,0,0\n"),
             std::string::npos);
 }
 
 TEST_F(TablesTest, FilesWithoutStampsNameFrames) {
-  PoseError error;
+  evaluation::PoseError error;
   error.stamp = 7 * kNsPerSecond;
   WriteErrors(folder / "errors.csv", {error}, false);
   EXPECT_NE(ReadFile(folder / "errors.csv").find("\n7,0.000000000,"), std::string::npos);
@@ -108,9 +108,10 @@ TEST_F(TablesTest, JsonSaysTheSameAsCsv) {
 }
 
 TEST_F(TablesTest, NoPathLeavesPercentagesEmpty) {
-  Trajectory still;
-  for (int i = 0; i < 5; ++i) still.push_back({i * kNsPerSecond / 10, SE3()});
-  const auto rows = SummaryRows("still", Evaluate(still, still, ParseAlignments("none"), {}, EvaluationOptions()));
+  geometry::Trajectory still;
+  for (int i = 0; i < 5; ++i) still.push_back({i * kNsPerSecond / 10, geometry::SE3()});
+  const auto rows = SummaryRows("still", evaluation::Evaluate(still, still, evaluation::ParseAlignments("none"), {},
+                                                              evaluation::EvaluationOptions()));
   WriteCsv(folder / "summary.csv", rows);
   EXPECT_NE(ReadFile(folder / "summary.csv").find(",,,,"), std::string::npos);
   WriteJson(folder / "summary.json", rows);
@@ -118,7 +119,7 @@ TEST_F(TablesTest, NoPathLeavesPercentagesEmpty) {
 }
 
 TEST_F(TablesTest, LifetimesAreOneTable) {
-  LifetimeStatistics statistics;
+  evaluation::LifetimeStatistics statistics;
   statistics.frames = 480;
   statistics.tracks = 2;
   statistics.in_frames = {4.0, 1.0, 4.0, 5.0};
@@ -157,7 +158,7 @@ TEST_F(TablesTest, TerminalTableLinesUp) {
   EXPECT_EQ(table[0], "path 100.00 m, 10.00 s, coverage 90.0 %, gaps 1, up -y");
   for (std::size_t i = 2; i < table.size(); ++i) EXPECT_EQ(table[i].size(), table[1].size());
   EXPECT_TRUE(table[4].starts_with("origin "));
-  Evaluation with_covariances = SampleEvaluation();
+  evaluation::Evaluation with_covariances = SampleEvaluation();
   with_covariances.consistency.emplace();
   with_covariances.consistency->rotation.mean = 1.5;
   EXPECT_NE(FormatSummary(with_covariances).find("rotations 1.50"), std::string::npos);
@@ -207,4 +208,4 @@ TEST_F(TablesTest, CannotWriteIsAnOutputError) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::report

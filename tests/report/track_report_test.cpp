@@ -4,27 +4,27 @@
 
 #include <cstdlib>
 
-#include "fixtures.hpp"
+#include "report/fixtures.hpp"
 
-namespace evo {
+namespace evo::report {
 namespace {
 
 using TrackReportTest = ReportTest;
 
 /// Track 4: 1 px off over 0.2 s, then 6 px; track 9 has no depth.
-TrackAccuracy SampleAccuracy() {
-  std::vector<FeatureTrack> tracks{{4, {}}, {9, {}}};
-  std::vector<TrueTrack> truth(2);
+evaluation::TrackAccuracy SampleAccuracy() {
+  std::vector<evaluation::FeatureTrack> tracks{{4, {}}, {9, {}}};
+  std::vector<evaluation::TrueTrack> truth(2);
   for (int i = 0; i < 4; ++i) {
     const TimeNs t = 1500000000'000000000 + i * 100'000'000;
     tracks[0].observations.push_back({4, t, i < 3 ? 51.0 : 56.0, 60.0});
     tracks[1].observations.push_back({9, t, 0.0, 0.0});
     truth[0].positions.emplace_back(Eigen::Vector2d(50.0, 60.0));
   }
-  truth[0].verdict = TrackVerdict::kJudged;
+  truth[0].verdict = evaluation::TrackVerdict::kJudged;
   truth[0].visible_until = 1500000000'400000000;
-  truth[1].verdict = TrackVerdict::kNoDepth;
-  return EvaluateTracks(tracks, truth, "depth", {5.0, 1.5});
+  truth[1].verdict = evaluation::TrackVerdict::kNoDepth;
+  return evaluation::EvaluateTracks(tracks, truth, "depth", {5.0, 1.5});
 }
 
 void ExpectHas(const std::string& text, const std::string& part) {
@@ -68,7 +68,7 @@ TEST_F(TrackReportTest, FigureShowsQuartilesOverAge) {
   const Figure figure = TrackErrorFigure("e", SampleAccuracy());
   ExpectHas(figure.data, "\n0.305 6 6 6 1\n");
   ExpectHas(figure.script, "error of the track (px)");
-  TrackAccuracy triangulated = SampleAccuracy();
+  evaluation::TrackAccuracy triangulated = SampleAccuracy();
   triangulated.truth = "triangulated";
   ExpectHas(TrackErrorFigure("e", triangulated).script, "residual of the triangulation (px)");
 }
@@ -82,4 +82,4 @@ TEST_F(TrackReportTest, GnuplotDrawsItAlsoWithoutData) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::report

@@ -7,7 +7,7 @@
 
 // Noise against its expectations, and the sensor as it comes.
 
-namespace evo {
+namespace evo::simulation {
 namespace {
 
 using test::ByPixel;
@@ -117,7 +117,7 @@ TEST(SensorNoise, HotAndDeadPixelsAreAsManyAsAskedFor) {
   EXPECT_NEAR(static_cast<double>(ByPixel(show.events).size()), 100.0, 30.0) << "hot";
   EXPECT_NEAR(static_cast<double>(show.events.size()) / (100.0 * 4.0), 50.0, 15.0);
   EXPECT_EQ(CountOf(show.events, -1), 0);
-  const EventColumns before = show.events;
+  const events::EventColumns before = show.events;
   show.events.clear();
   show.At(4'004 * kMs, [](int, int, double) { return 0.5F; });
   show.At(4'010 * kMs, [](int, int, double) { return 5.0F; });
@@ -159,4 +159,4 @@ TEST(SensorNoise, DefaultSensorHasThePolaritiesAndRatesOfMvsecDriving) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::simulation

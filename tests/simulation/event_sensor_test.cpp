@@ -12,7 +12,7 @@
 
 // Without noise: the events against theory.
 
-namespace evo {
+namespace evo::simulation {
 namespace {
 
 using test::ByPixel;
@@ -60,7 +60,7 @@ TEST(EventSensor, MovingEdgeFiresWhereItIs) {
 }
 
 // A step of log intensity by `height` at t = 0 (a ramp of 1 us), then constant.
-EventColumns StepResponse(const SensorOptions& options, double from, double height) {
+events::EventColumns StepResponse(const SensorOptions& options, double from, double height) {
   Show show(1, 1, options);
   show.At(-kUs, [&](int, int, double) { return RadianceOfLog(from, options); });
   show.Run(0, 400 * kMs, 10 * kMs, [&](int, int, double) { return RadianceOfLog(from + height, options); });
@@ -77,7 +77,7 @@ TEST(EventSensor, StepResponseIsThatOfALowPass) {
   // Above radiance 1 the cut-off is the bandwidth, below it falls with radiance, in the dark it stays.
   for (const Case c : {Case{0.5, 1.1, 40.0}, Case{2.0, -1.1, 40.0}, Case{std::log(0.5) - 1.1, 1.1, 20.0 - 0.08},
                        Case{std::log(0.25) + 1.1, -1.1, 10.0 - 0.08}, Case{-5.0, 1.1, 5.0}}) {
-    const EventColumns events = StepResponse(options, c.from, c.height);
+    const events::EventColumns events = StepResponse(options, c.from, c.height);
     ASSERT_EQ(events.size(), 5U) << c.from;
     for (std::size_t k = 0; k < 5; ++k) {
       const double share = 0.2 * static_cast<double>(k + 1) / 1.1;
@@ -105,7 +105,7 @@ TEST(EventSensor, SeesAPeakWithinAStep) {
     show.At(20 * kMs, [&](int, int, double) { return RadianceOfLog(-1.0, options); });
     return show.events;
   };
-  const EventColumns below = events_with(peak - 0.003);
+  const events::EventColumns below = events_with(peak - 0.003);
   ASSERT_EQ(below.size(), 1U);
   EXPECT_LT(ToSeconds(below.t[0]), peak_at);
   EXPECT_GT(ToSeconds(below.t[0]), 0.7 * peak_at);
@@ -218,7 +218,7 @@ SortedEvents DefaultSensorEvents(std::uint64_t seed, int tile, bool backwards, d
     return static_cast<float>(0.5 + 0.45 * std::sin(0.4 * x + 0.1 * y - 40 * t));
   });
   SortedEvents sorted;
-  const EventColumns& e = show.events;
+  const events::EventColumns& e = show.events;
   for (std::size_t i = 0; i < e.size(); ++i) sorted.emplace_back(e.y[i], e.x[i], e.t[i], e.polarity[i]);
   // Stable by pixel only: the order in time within a pixel is the sensor's.
   std::ranges::stable_sort(sorted, {}, [](const auto& v) { return std::pair(std::get<0>(v), std::get<1>(v)); });
@@ -271,7 +271,7 @@ TEST(EventSensor, BadInputIsAnError) {
   EXPECT_THROW(EventSensor(0, 10, options, 1), Error);
   EXPECT_THROW(EventSensor(10, 70'000, options, 1), Error);
   EventSensor sensor(4, 2, options, 1);
-  EventColumns events;
+  events::EventColumns events;
   const Tile tile{0, 0, 4, 2};
   const std::vector<float> fine(8, 0.5F);
   sensor.Advance(tile, 0, fine, &events);
@@ -301,4 +301,4 @@ TEST(EventSensor, OptionsHaveRanges) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::simulation

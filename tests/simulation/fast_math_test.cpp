@@ -1,11 +1,11 @@
-#include "evo/simulation/fast_math.hpp"
+#include "simulation/render/fast_math.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-namespace evo {
+namespace evo::simulation {
 namespace {
 
 TEST(FastMath, LogIsThatOfTheLibrary) {
@@ -30,4 +30,4 @@ TEST(FastMath, OneMinusExpIsThatOfTheLibrary) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::simulation

@@ -8,7 +8,7 @@
 
 #include "evo/core/error.hpp"
 
-namespace evo {
+namespace evo::simulation {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -35,9 +35,9 @@ Jolt LargestJolt(const CameraMotion& motion, double from, double to) {
   Eigen::Vector3d last_velocity = Eigen::Vector3d::Zero(), last_rate = Eigen::Vector3d::Zero();
   bool first = true;
   for (double t = from; t < to; t += kStep) {
-    const SE3 a = motion(FromSeconds(t)), b = motion(FromSeconds(t + kStep));
+    const geometry::SE3 a = motion(FromSeconds(t)), b = motion(FromSeconds(t + kStep));
     const Eigen::Vector3d velocity = (b.translation() - a.translation()) / kStep;
-    const Eigen::Vector3d rate = so3::Log(a.rotation().conjugate() * b.rotation()) / kStep;
+    const Eigen::Vector3d rate = geometry::so3::Log(a.rotation().conjugate() * b.rotation()) / kStep;
     if (!first) {
       jolt.linear = std::max(jolt.linear, (velocity - last_velocity).norm());
       jolt.angular = std::max(jolt.angular, (rate - last_rate).norm());
@@ -55,9 +55,9 @@ TEST(VehicleMotion, CruisesAtConstantSpeed) {
   const VehicleMotion motion = MakeVehicleMotion(RoadLine("straight", 600.0, 0.0, 1), options, 1);
   EXPECT_EQ(motion.distance_m(0), 0.0);
   EXPECT_NEAR(motion.distance_m(FromSeconds(60.0)), 450.0, 1e-6);
-  const SE3 pose = motion.T_world_cam(FromSeconds(20.0));
+  const geometry::SE3 pose = motion.T_world_cam(FromSeconds(20.0));
   EXPECT_LT((pose.translation() - Eigen::Vector3d(0.0, 0.0, 150.0)).norm(), 1e-6);
-  EXPECT_LT(so3::Log(pose.rotation()).norm(), 1e-12);
+  EXPECT_LT(geometry::so3::Log(pose.rotation()).norm(), 1e-12);
   EXPECT_NEAR(SpeedAt(motion, 59.99), 7.5, 1e-6) << "no braking at the end of the run";
 }
 
@@ -113,8 +113,8 @@ TEST(VehicleMotion, SlowsDownForTurnsAndEndsAtARightAngle) {
     slowest = std::min(slowest, SpeedAt(motion, t));
   }
   EXPECT_NEAR(slowest, 4.0, 0.1);
-  const SE3 last = motion.T_world_cam(FromSeconds(60.0));
-  EXPECT_NEAR(std::abs(so3::Log(last.rotation()).y()), 0.5 * kPi, 1e-6);
+  const geometry::SE3 last = motion.T_world_cam(FromSeconds(60.0));
+  EXPECT_NEAR(std::abs(geometry::so3::Log(last.rotation()).y()), 0.5 * kPi, 1e-6);
   EXPECT_NEAR(motion.distance_m(FromSeconds(60.0)), 80.0, 0.01) << "stops at the end of the road";
 }
 
@@ -124,7 +124,7 @@ TEST(VehicleMotion, StartsAtTheIdentityAndKeepsItsHeightAboveTheRoad) {
   const RoadLine road("curved", 440.0, 0.08, 4);
   const VehicleMotion shaken = MakeVehicleMotion(road, options, 1);
   EXPECT_EQ(shaken.T_world_cam(0).translation(), Eigen::Vector3d::Zero());
-  EXPECT_EQ(so3::Log(shaken.T_world_cam(0).rotation()), Eigen::Vector3d::Zero());
+  EXPECT_EQ(geometry::so3::Log(shaken.T_world_cam(0).rotation()), Eigen::Vector3d::Zero());
   const VehicleMotion motion = MakeVehicleMotion(road, Quiet(), 1);
   for (double t = 0.0; t < 60.0; t += 0.7) {
     const auto point = road.At(motion.distance_m(FromSeconds(t)));
@@ -153,8 +153,8 @@ TEST(VehicleMotion, BumpHasItsPeaksThenDiesAway) {
   EXPECT_EQ(motion.T_world_cam(FromSeconds(29.9999)).translation().y(), 0.0);
   double pitch = 0.0, heave = 0.0, roll = 0.0, dive = 0.0;
   for (double t = 30.0; t < 33.0; t += 0.001) {
-    const SE3 pose = motion.T_world_cam(FromSeconds(t));
-    const Eigen::Vector3d turn = so3::Log(pose.rotation()) * 180.0 / kPi;
+    const geometry::SE3 pose = motion.T_world_cam(FromSeconds(t));
+    const Eigen::Vector3d turn = geometry::so3::Log(pose.rotation()) * 180.0 / kPi;
     pitch = std::max(pitch, turn.x());
     dive = std::min(dive, turn.x());
     roll = std::max(roll, std::abs(turn.z()));
@@ -198,7 +198,7 @@ TEST(VehicleMotion, VibrationHasItsSizeAndIsSmallAtRest) {
   const auto deviation = [&](double from, double to) {
     double sum = 0.0;
     for (int i = 0; i < 10000; ++i) {
-      sum += so3::Log(motion.T_world_cam(FromSeconds(from + (to - from) * i / 10000)).rotation()).squaredNorm() / 3e4;
+      sum += geometry::so3::Log(motion.T_world_cam(FromSeconds(from + (to - from) * i / 10000)).rotation()).squaredNorm() / 3e4;
     }
     return std::sqrt(sum) * 180.0 / kPi;
   };
@@ -249,14 +249,14 @@ TEST(HandheldMotion, StartsAtRestAndHasItsSize) {
   HandheldOptions options;
   options.duration_s = 400.0;
   const CameraMotion motion = MakeHandheldMotion(options, 5);
-  EXPECT_EQ(motion(0).Matrix(), SE3().Matrix());
+  EXPECT_EQ(motion(0).Matrix(), geometry::SE3().Matrix());
   EXPECT_LT(motion(FromSeconds(0.01)).translation().norm(), 1e-5);
   double translation = 0.0, rotation = 0.0, farthest = 0.0;
   constexpr int kSamples = 20000;
   for (int i = 0; i < kSamples; ++i) {
-    const SE3 pose = motion(FromSeconds(2.0 + 0.02 * i));
+    const geometry::SE3 pose = motion(FromSeconds(2.0 + 0.02 * i));
     translation += pose.translation().squaredNorm() / (3.0 * kSamples);
-    rotation += so3::Log(pose.rotation()).squaredNorm() / (3.0 * kSamples);
+    rotation += geometry::so3::Log(pose.rotation()).squaredNorm() / (3.0 * kSamples);
     farthest = std::max(farthest, pose.translation().cwiseAbs().maxCoeff());
   }
   EXPECT_NEAR(std::sqrt(translation), 0.3, 0.01);
@@ -271,7 +271,7 @@ TEST(HandheldMotion, StartsAtRestAndHasItsSize) {
 
 TEST(SliderMotion, CoversItsLengthAtConstantSpeed) {
   const CameraMotion motion = MakeSliderMotion({});
-  EXPECT_EQ(motion(0).Matrix(), SE3().Matrix());
+  EXPECT_EQ(motion(0).Matrix(), geometry::SE3().Matrix());
   EXPECT_NEAR(motion(FromSeconds(3.0)).translation().x(), 0.6, 1e-12);
   const double speed = 0.6 / 2.95;
   EXPECT_NEAR(motion(FromSeconds(2.0)).translation().x() - motion(FromSeconds(1.0)).translation().x(), speed, 1e-12);
@@ -282,7 +282,7 @@ TEST(SliderMotion, CoversItsLengthAtConstantSpeed) {
 TEST(TrueTrajectory, SamplesTheMotionUpToItsEnd) {
   const CameraMotion motion = MakeSliderMotion({});
   const TimeNs epoch = 1'504'645'177'420'000'123;
-  const Trajectory truth = TrueTrajectory(motion, FromSeconds(3.0), 20.0, epoch);
+  const geometry::Trajectory truth = TrueTrajectory(motion, FromSeconds(3.0), 20.0, epoch);
   ASSERT_EQ(truth.size(), 61U);
   EXPECT_EQ(truth.front().t, epoch);
   EXPECT_EQ(truth.back().t, epoch + FromSeconds(3.0));
@@ -291,4 +291,4 @@ TEST(TrueTrajectory, SamplesTheMotionUpToItsEnd) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::simulation

@@ -5,22 +5,22 @@
 #include "evo/core/error.hpp"
 #include "evo/simulation/motion.hpp"
 
-namespace evo {
+namespace evo::simulation {
 namespace {
 
 constexpr TimeNs kEpoch = 1'504'645'177'000'000'000;
 
-double Difference(const SE3& a, const SE3& b) { return (a.Inverse() * b).Log().norm(); }
+double Difference(const geometry::SE3& a, const geometry::SE3& b) { return (a.Inverse() * b).Log().norm(); }
 
 TEST(MotionThrough, PassesThroughThePosesAtUnevenTimes) {
   const CameraMotion motion = MakeHandheldMotion({}, 11);
-  Trajectory trajectory;
+  geometry::Trajectory trajectory;
   Random random(3);
   for (TimeNs t = 0; t < FromSeconds(20.0); t += FromSeconds(random.Uniform(0.02, 0.2))) {
     trajectory.push_back({kEpoch + t, motion(t)});
   }
   const CameraMotion through = MakeMotionThrough(trajectory);
-  EXPECT_LT(Difference(through(0), SE3()), 1e-12);
+  EXPECT_LT(Difference(through(0), geometry::SE3()), 1e-12);
   for (const auto& pose : trajectory) ASSERT_LT(Difference(through(pose.t - kEpoch), pose.T_world_cam), 1e-9);
 }
 
@@ -44,8 +44,8 @@ TEST(MotionThrough, VelocityIsContinuousAtThePoses) {
   constexpr TimeNs kStep = 10'000;
   for (int i = 1; i < 100; ++i) {
     const TimeNs t = i * FromSeconds(0.2);
-    const Vector6d before = (through(t - kStep).Inverse() * through(t)).Log() / ToSeconds(kStep);
-    const Vector6d after = (through(t).Inverse() * through(t + kStep)).Log() / ToSeconds(kStep);
+    const geometry::Vector6d before = (through(t - kStep).Inverse() * through(t)).Log() / ToSeconds(kStep);
+    const geometry::Vector6d after = (through(t).Inverse() * through(t + kStep)).Log() / ToSeconds(kStep);
     ASSERT_LT((after - before).norm(), 2e-3) << t;
     ASSERT_GT(after.norm(), 1e-3);
   }
@@ -53,8 +53,9 @@ TEST(MotionThrough, VelocityIsContinuousAtThePoses) {
 
 TEST(MotionThrough, MovesTheWorldToTheFirstPose) {
   const CameraMotion motion = MakeHandheldMotion({}, 14);
-  const SE3 T_other_world = SE3::Exp((Vector6d() << 5.0, -3.0, 2.0, 0.4, 1.0, -0.7).finished());
-  Trajectory trajectory = TrueTrajectory(motion, FromSeconds(5.0), 20.0, 0);
+  const geometry::SE3 T_other_world =
+      geometry::SE3::Exp((geometry::Vector6d() << 5.0, -3.0, 2.0, 0.4, 1.0, -0.7).finished());
+  geometry::Trajectory trajectory = TrueTrajectory(motion, FromSeconds(5.0), 20.0, 0);
   const CameraMotion here = MakeMotionThrough(trajectory);
   for (auto& pose : trajectory) pose.T_world_cam = T_other_world * pose.T_world_cam;
   const CameraMotion there = MakeMotionThrough(trajectory);
@@ -62,23 +63,24 @@ TEST(MotionThrough, MovesTheWorldToTheFirstPose) {
 }
 
 TEST(MotionThrough, TwoPosesMakeASteadyMotion) {
-  const SE3 end(so3::Exp({0.0, 0.6, 0.0}), {1.0, 2.0, 3.0});
-  const CameraMotion motion = MakeMotionThrough({{0, SE3()}, {kNsPerSecond, end}});
-  const SE3 middle = motion(kNsPerSecond / 4);
+  const geometry::SE3 end(geometry::so3::Exp({0.0, 0.6, 0.0}), {1.0, 2.0, 3.0});
+  const CameraMotion motion = MakeMotionThrough({{0, geometry::SE3()}, {kNsPerSecond, end}});
+  const geometry::SE3 middle = motion(kNsPerSecond / 4);
   EXPECT_LT((middle.translation() - Eigen::Vector3d(0.25, 0.5, 0.75)).norm(), 1e-12);
-  EXPECT_LT((so3::Log(middle.rotation()) - Eigen::Vector3d(0.0, 0.15, 0.0)).norm(), 1e-12);
+  EXPECT_LT((geometry::so3::Log(middle.rotation()) - Eigen::Vector3d(0.0, 0.15, 0.0)).norm(), 1e-12);
 }
 
 TEST(MotionThrough, RefusesWhatIsNoMotionAndTimesOutside) {
   EXPECT_THROW(MakeMotionThrough({}), Error);
-  EXPECT_THROW(MakeMotionThrough({{0, SE3()}}), Error);
-  EXPECT_THROW(MakeMotionThrough({{5, SE3()}, {5, SE3()}}), Error);
-  EXPECT_THROW(MakeMotionThrough({{0, SE3()}, {5, SE3({1, 0, 0, 0}, {std::nan(""), 0, 0})}}), Error);
-  const CameraMotion motion = MakeMotionThrough({{100, SE3()}, {200, SE3()}});
+  EXPECT_THROW(MakeMotionThrough({{0, geometry::SE3()}}), Error);
+  EXPECT_THROW(MakeMotionThrough({{5, geometry::SE3()}, {5, geometry::SE3()}}), Error);
+  EXPECT_THROW(MakeMotionThrough({{0, geometry::SE3()}, {5, geometry::SE3({1, 0, 0, 0}, {std::nan(""), 0, 0})}}),
+               Error);
+  const CameraMotion motion = MakeMotionThrough({{100, geometry::SE3()}, {200, geometry::SE3()}});
   EXPECT_NO_THROW(motion(100));
   EXPECT_THROW(motion(101), Error);
   EXPECT_THROW(motion(-1), Error);
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::simulation

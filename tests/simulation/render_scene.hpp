@@ -3,14 +3,14 @@
 #include <Eigen/Geometry>
 #include <vector>
 
+#include "evo/core/random.hpp"
 #include "evo/geometry/known_cameras.hpp"
-#include "evo/simulation/random.hpp"
 #include "evo/simulation/renderer.hpp"
 
-namespace evo {
+namespace evo::simulation {
 
-inline Camera Davis346() { return Camera(MvsecDavis346()); }
-inline Camera Davis240() { return Camera(UzhDavis240c()); }
+inline geometry::Camera Davis346() { return geometry::Camera(geometry::MvsecDavis346()); }
+inline geometry::Camera Davis240() { return geometry::Camera(geometry::UzhDavis240c()); }
 
 inline Texture Plain(float reflectance, float coverage = 1.0F) {
   return Texture(1, 1, {{.reflectance = reflectance, .coverage = coverage}});
@@ -48,8 +48,9 @@ inline Scene RandomScene(int surfaces, std::uint64_t seed) {
     const Eigen::Vector3d start = RandomVector(&random, 10.0);
     const Eigen::Vector3d speed = RandomVector(&random, 5.0);
     const Eigen::Vector3d spin = RandomVector(&random, 1.0);
-    scene.bodies.push_back(
-        {.T_world_body = [=](TimeNs t) { return SE3(so3::Exp(spin * ToSeconds(t)), start + speed * ToSeconds(t)); }});
+    scene.bodies.push_back({.T_world_body = [=](TimeNs t) {
+      return geometry::SE3(geometry::so3::Exp(spin * ToSeconds(t)), start + speed * ToSeconds(t));
+    }});
   }
   for (int i = 0; i < surfaces; ++i) {
     Surface surface;
@@ -70,10 +71,10 @@ inline Renderer::Visible All(const Scene& scene) {
   return all;
 }
 
-inline Tile Whole(const Camera& camera) { return {0, 0, camera.width(), camera.height()}; }
+inline Tile Whole(const geometry::Camera& camera) { return {0, 0, camera.width(), camera.height()}; }
 
-inline std::vector<float> RenderAll(const Scene& scene, const Camera& camera, int samples, TimeNs t = 0,
-                                    const SE3& T_world_cam = SE3()) {
+inline std::vector<float> RenderAll(const Scene& scene, const geometry::Camera& camera, int samples, TimeNs t = 0,
+                                    const geometry::SE3& T_world_cam = geometry::SE3()) {
   Renderer::Radiance radiance;
   Renderer(scene, camera, samples).Render(Whole(camera), All(scene), t, T_world_cam, &radiance);
   std::vector<float> image = radiance.steady;
@@ -82,8 +83,8 @@ inline std::vector<float> RenderAll(const Scene& scene, const Camera& camera, in
   return image;
 }
 
-inline std::vector<float> DepthOfAll(const Scene& scene, const Camera& camera, TimeNs t = 0,
-                                     const SE3& T_world_cam = SE3()) {
+inline std::vector<float> DepthOfAll(const Scene& scene, const geometry::Camera& camera, TimeNs t = 0,
+                                     const geometry::SE3& T_world_cam = geometry::SE3()) {
   std::vector<float> image(static_cast<std::size_t>(camera.width()) * static_cast<std::size_t>(camera.height()));
   std::vector<std::uint8_t> moving(image.size());
   Renderer(scene, camera, 1).Depth(Whole(camera), All(scene), t, T_world_cam, image, moving);
@@ -96,11 +97,11 @@ struct Hit {
   double depth = 0.0;
   double margin = 1.0;  ///< of a, b from the edges of the surfaces met: hits closer to an edge may differ by rounding
 };
-inline Hit CastRay(const Scene& scene, const Eigen::Vector2d& ray, TimeNs t, const SE3& T_world_cam) {
+inline Hit CastRay(const Scene& scene, const Eigen::Vector2d& ray, TimeNs t, const geometry::SE3& T_world_cam) {
   Hit hit;
   for (int i = 0; i < static_cast<int>(scene.surfaces.size()); ++i) {
     const Surface& s = scene.surfaces[i];
-    const SE3 T_cam_body = T_world_cam.Inverse() * BodyPose(scene, s.body, t);
+    const geometry::SE3 T_cam_body = T_world_cam.Inverse() * BodyPose(scene, s.body, t);
     Eigen::Matrix3d system;
     system << ray.homogeneous(), -(T_cam_body.rotation() * s.edge_u), -(T_cam_body.rotation() * s.edge_v);
     const Eigen::Vector3d z_a_b = system.inverse() * (T_cam_body * s.origin);
@@ -114,4 +115,4 @@ inline Hit CastRay(const Scene& scene, const Eigen::Vector2d& ray, TimeNs t, con
   return hit;
 }
 
-}  // namespace evo
+}  // namespace evo::simulation

@@ -9,20 +9,21 @@
 #include "evo/core/error.hpp"
 #include "simulation/render_scene.hpp"
 
-namespace evo {
+namespace evo::simulation {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-class RendererOf : public testing::TestWithParam<Distortion> {
+class RendererOf : public testing::TestWithParam<geometry::Distortion> {
  protected:
-  Camera camera() const { return GetParam() == Distortion::kRadTan ? Davis240() : Davis346(); }
+  geometry::Camera camera() const { return GetParam() == geometry::Distortion::kRadTan ? Davis240() : Davis346(); }
 };
-INSTANTIATE_TEST_SUITE_P(BothLenses, RendererOf, testing::Values(Distortion::kRadTan, Distortion::kEquidistant));
+INSTANTIATE_TEST_SUITE_P(BothLenses, RendererOf,
+                         testing::Values(geometry::Distortion::kRadTan, geometry::Distortion::kEquidistant));
 
 TEST_P(RendererOf, DepthOfAPlaneIsExact) {
-  const Camera lens = camera();
+  const geometry::Camera lens = camera();
   Scene scene = Empty();
   Surface ground;  // level, 1.5 m below
   ground.origin = {-200, 1.5, -10};
@@ -48,11 +49,11 @@ TEST_P(RendererOf, DepthOfAPlaneIsExact) {
 }
 
 TEST_P(RendererOf, AgreesWithOneRayAtATime) {
-  const Camera lens = camera();
+  const geometry::Camera lens = camera();
   for (int seed = 0; seed < 4; ++seed) {
     const Scene scene = RandomScene(60, seed);
     const TimeNs t = FromSeconds(0.3);
-    const SE3 pose(so3::Exp({0.1, -0.3, 0.2}), {0.5, 1.0, -0.7});
+    const geometry::SE3 pose(geometry::so3::Exp({0.1, -0.3, 0.2}), {0.5, 1.0, -0.7});
     const auto depth = DepthOfAll(scene, lens, t, pose);
     for (int i = 0; i < lens.width() * lens.height(); i += 37) {
       const auto ray = *lens.Undistort({i % lens.width(), i / lens.width()});
@@ -75,7 +76,7 @@ double EdgeAt(const std::vector<double>& line, double bright, double dark) {
 }
 
 TEST_P(RendererOf, CornersAreWhereTheCameraProjectsThem) {
-  const Camera lens = camera();
+  const geometry::Camera lens = camera();
   for (const int samples : {2, 8}) {
     double mean_error = 0.0;
     for (int i = 0; i < 12; ++i) {
@@ -119,14 +120,14 @@ TEST_P(RendererOf, CornersAreWhereTheCameraProjectsThem) {
 }
 
 TEST_P(RendererOf, DoesNotDependOnTheTiles) {
-  const Camera lens = camera();
+  const geometry::Camera lens = camera();
   const Scene scene = RandomScene(40, 9);
   const auto whole = RenderAll(scene, lens, 2);
   const Renderer renderer(scene, lens, 2);
   for (const Tile& tile : CutIntoTiles(lens.width(), lens.height(), 21)) {
     Renderer::Radiance part;
-    const auto visible = renderer.FindVisible(tile, 0, 0, SE3(), SE3());
-    renderer.Render(tile, visible, 0, SE3(), &part);
+    const auto visible = renderer.FindVisible(tile, 0, 0, geometry::SE3(), geometry::SE3());
+    renderer.Render(tile, visible, 0, geometry::SE3(), &part);
     for (int i = 0; i < tile.width * tile.height; ++i) {
       const int x = tile.x0 + i % tile.width;
       const int y = tile.y0 + i / tile.width;
@@ -169,7 +170,7 @@ TEST(Renderer, TexturesLieWhereTheyAreSaidTo) {
   wall.texel_origin = {1000.0, 0.0};  // an even number: texel 0 is left
   wall.texels = {2.0, 1.0};
   scene.surfaces = {wall};
-  const Camera lens = Davis346();
+  const geometry::Camera lens = Davis346();
   const auto image = RenderAll(scene, lens, 2);
   const auto at = [&](double x) {
     const Vector2d pixel = lens.Project({x, 0.0, 2.0});
@@ -188,18 +189,18 @@ TEST(Renderer, HolesAreLookedThroughFromNearToFar) {
   scene.surfaces = {Facing(-9, 9, -9, 9, 5, 2), Facing(-9, 9, -9, 9, 3, 1), Facing(-9, 9, -9, 9, 2, 3)};
   scene.lighting.sky = 2.0;
   const double expected = 0.25 * 0.8 + 0.75 * (0.6 * 0.1 + 0.4 * 2.0);
-  const Camera lens = Davis346();
+  const geometry::Camera lens = Davis346();
   EXPECT_NEAR(RenderAll(scene, lens, 2)[130 * 346 + 170], expected, 1e-5);
   EXPECT_NEAR(DepthOfAll(scene, lens)[130 * 346 + 170], 5.0, 1e-5) << "the first that covers half";
 }
 
 TEST(Renderer, BodiesMove) {
   Scene scene = Empty();
-  scene.bodies.push_back({.T_world_body = [](TimeNs t) { return SE3({1, 0, 0, 0}, {ToSeconds(t), 0, 0}); }});
+  scene.bodies.push_back({.T_world_body = [](TimeNs t) { return geometry::SE3({1, 0, 0, 0}, {ToSeconds(t), 0, 0}); }});
   scene.surfaces.push_back(Facing(-1, 0, -9, 9, 4));
   scene.surfaces[0].body = 1;
   scene.lighting.sky = 0.0;
-  const Camera lens = Davis240();
+  const geometry::Camera lens = Davis240();
   for (const double t : {0.0, 0.1, 0.77}) {
     const auto image = RenderAll(scene, lens, 4, FromSeconds(t));
     const int row = 110;  // near the centre: straight edges stay straight
@@ -213,7 +214,7 @@ TEST(Renderer, BodiesMove) {
 
 /// The radiance that `scene` shows at the pixel nearest to a point, and the ray of that pixel's centre.
 std::pair<double, Vector3d> SeenNear(const Scene& scene, const Vector3d& point, TimeNs t) {
-  const Camera lens = Davis346();
+  const geometry::Camera lens = Davis346();
   const Vector2d pixel = lens.Project(point).array().round();
   const auto image = RenderAll(scene, lens, 4, t);
   return {image[static_cast<int>(pixel.y()) * 346 + static_cast<int>(pixel.x())], lens.Undistort(pixel)->homogeneous()};
@@ -253,9 +254,9 @@ TEST(Renderer, HeadLampsMoveWithTheCamera) {
 }
 
 TEST(Renderer, APixelWithoutARayIsBlack) {
-  Calibration folded = Davis240().calibration();
+  geometry::Calibration folded = Davis240().calibration();
   folded.coefficients = {-0.9, 0.0, 0.0, 0.0, 0.0};  // folds back inside the sensor
-  const Camera lens(folded);
+  const geometry::Camera lens(folded);
   ASSERT_FALSE(lens.Undistort({0, 0}));
   Scene scene = Empty();
   EXPECT_EQ(RenderAll(scene, lens, 2)[0], 0.0F);
@@ -266,7 +267,7 @@ TEST(Renderer, APixelWithoutARayIsBlack) {
 }
 
 TEST(Renderer, RefusesWhatItCannotRender) {
-  const Camera lens = Davis240();
+  const geometry::Camera lens = Davis240();
   Scene scene = Empty();
   EXPECT_THROW(Renderer(scene, lens, 0), Error);
   EXPECT_THROW(Renderer(scene, lens, 17), Error);
@@ -288,4 +289,4 @@ TEST(Renderer, TilesCoverTheSensorOnce) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::simulation

@@ -6,7 +6,7 @@
 #include "evo/core/error.hpp"
 #include "evo/simulation/motion.hpp"
 
-namespace evo {
+namespace evo::simulation {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -123,4 +123,4 @@ TEST(RoadLine, RefusesNonsense) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::simulation

@@ -14,7 +14,7 @@
 #include "evo/geometry/known_cameras.hpp"
 #include "evo/io/calibration_io.hpp"
 
-namespace evo {
+namespace evo::simulation {
 namespace {
 
 namespace fs = std::filesystem;
@@ -50,7 +50,7 @@ TEST(SceneOptions, DrivingDayIsThePapersRun) {
   Load("driving_day.yaml", &options);
   const SimulatedRun run = MakeRun(options);
   EXPECT_EQ(run.duration, FromSeconds(60.0));
-  const Trajectory poses = Sample(run.motion, run.duration, 20.0);
+  const geometry::Trajectory poses = Sample(run.motion, run.duration, 20.0);
   ASSERT_EQ(poses.size(), 1201u);
   double length = 0.0;
   for (std::size_t i = 1; i < poses.size(); ++i) {
@@ -89,14 +89,14 @@ TEST(SceneOptions, EveryBundledSceneHasAShortFormThatHoldsWhatItIsFor) {
     const double seconds = ToSeconds(run.duration);
     double highest = 0.0, slowest = 1e9, fastest = 0.0;
     for (double t = 0.0; t < seconds; t += 0.02) {
-      const SE3 pose = run.motion(FromSeconds(t));
-      const SE3 next = run.motion(FromSeconds(t + 0.02));
-      highest = std::max(highest, so3::Log(pose.rotation().conjugate() * next.rotation()).norm() / 0.02);
+      const geometry::SE3 pose = run.motion(FromSeconds(t));
+      const geometry::SE3 next = run.motion(FromSeconds(t + 0.02));
+      highest = std::max(highest, geometry::so3::Log(pose.rotation().conjugate() * next.rotation()).norm() / 0.02);
       slowest = std::min(slowest, Speed(run, t));
       fastest = std::max(fastest, Speed(run, t));
     }
-    const SE3 start = run.motion(0), end = run.motion(run.duration);
-    const double turned = so3::Log(start.rotation().conjugate() * end.rotation()).norm();
+    const geometry::SE3 start = run.motion(0), end = run.motion(run.duration);
+    const double turned = geometry::so3::Log(start.rotation().conjugate() * end.rotation()).norm();
     if (name == "bumps.yaml" || name.starts_with("driving")) {
       EXPECT_GT(highest, 0.2) << name << ": no bump";
     }
@@ -131,15 +131,16 @@ TEST(SceneOptions, APartKeepsTheWorldAndThePoses) {
 }
 
 TEST(SceneOptions, TheDavis346IsThatOfTheBundledCalibration) {
-  const Calibration bundled = ReadCalibration(fs::path(EVO_SOURCE_DIR) / "configs/calibrations/mvsec_outdoor_day.yaml");
-  const Calibration built_in = MvsecDavis346();
+  const geometry::Calibration bundled =
+      io::ReadCalibration(fs::path(EVO_SOURCE_DIR) / "configs/calibrations/mvsec_outdoor_day.yaml");
+  const geometry::Calibration built_in = geometry::MvsecDavis346();
   EXPECT_EQ(bundled.fx, built_in.fx);
   EXPECT_EQ(bundled.cy, built_in.cy);
   EXPECT_EQ(bundled.coefficients, built_in.coefficients);
 }
 
 TEST(SceneOptions, SamplesEndWithTheMotion) {
-  const Trajectory poses = Sample([](TimeNs) { return SE3(); }, 25'000'000, 100.0);
+  const geometry::Trajectory poses = Sample([](TimeNs) { return geometry::SE3(); }, 25'000'000, 100.0);
   ASSERT_EQ(poses.size(), 4u);
   EXPECT_EQ(poses[2].t, 20'000'000);
   EXPECT_EQ(poses[3].t, 25'000'000);
@@ -175,4 +176,4 @@ TEST(SceneOptions, FollowsAMotionFromAFile) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::simulation

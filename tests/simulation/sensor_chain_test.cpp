@@ -7,19 +7,19 @@
 #include "simulation/render_scene.hpp"
 #include "simulation/sensor_stimulus.hpp"
 
-namespace evo::test {
+namespace evo::simulation::test {
 namespace {
 
 class EventsOnly : public SimulationSink {
  public:
-  void OnEvents(const EventColumns& block) override {
+  void OnEvents(const events::EventColumns& block) override {
     for (std::size_t i = 0; i < block.size(); ++i) {
       events.push_back(block.t[i], block.x[i], block.y[i], block.polarity[i]);
     }
   }
-  void OnImage(TimeNs, const GreyImage&, std::size_t) override {}
-  void OnDepth(TimeNs, const DepthMap&) override {}
-  EventColumns events;
+  void OnImage(TimeNs, const events::GreyImage&, std::size_t) override {}
+  void OnDepth(TimeNs, const events::DepthMap&) override {}
+  events::EventColumns events;
 };
 
 SimulationOptions Fine() {
@@ -29,8 +29,8 @@ SimulationOptions Fine() {
   return options;
 }
 
-EventColumns EventsOf(const Scene& scene, const Camera& camera, const CameraMotion& motion, TimeNs duration,
-                      const SensorOptions& sensor, const SimulationOptions& options) {
+events::EventColumns EventsOf(const Scene& scene, const geometry::Camera& camera, const CameraMotion& motion,
+                              TimeNs duration, const SensorOptions& sensor, const SimulationOptions& options) {
   ThreadPool pool(2);
   EventsOnly sink;
   Simulate(scene, camera, motion, 0, duration, sensor, options, 1, &pool, nullptr, &sink);
@@ -61,9 +61,10 @@ class MovingEdge : public ::testing::TestWithParam<std::pair<float, float>> {
   }
 
   Scene scene = Empty();
-  const Camera camera{Calibration{Distortion::kRadTan, 24, 12, kFocal, kFocal, 8.0, 6.0, {}}};
+  const geometry::Camera camera{
+      geometry::Calibration{geometry::Distortion::kRadTan, 24, 12, kFocal, kFocal, 8.0, 6.0, {}}};
   const CameraMotion motion = [](TimeNs t) {
-    return SE3(Eigen::Quaterniond::Identity(), {kSpeed * ToSeconds(t), 0.0, 0.0});
+    return geometry::SE3(Eigen::Quaterniond::Identity(), {kSpeed * ToSeconds(t), 0.0, 0.0});
   };
   SimulationOptions options = Fine();
 };
@@ -116,14 +117,15 @@ TEST(SensorChain, IntegratedEventsGiveBackTheLogChangeOfTheFrames) {
     }
     return random;
   }();
-  const Camera camera({Distortion::kRadTan, 48, 36, 40.0, 40.0, 24.0, 18.0, {-0.2, 0.03, 0.001, -0.001, 0.0}});
+  const geometry::Camera camera(
+      {geometry::Distortion::kRadTan, 48, 36, 40.0, 40.0, 24.0, 18.0, {-0.2, 0.03, 0.001, -0.001, 0.0}});
   const CameraMotion motion = [](TimeNs t) {
     const double s = ToSeconds(t);
-    return SE3(so3::Exp({0.6 * s, -s, 0.8 * s}), {0.5 * s, 0.3 * s, 2.0 * s});
+    return geometry::SE3(geometry::so3::Exp({0.6 * s, -s, 0.8 * s}), {0.5 * s, 0.3 * s, 2.0 * s});
   };
   const TimeNs duration = FromSeconds(0.25);
   const SensorOptions sensor = IdealSensor(0.11, 0.07);
-  const EventColumns events = EventsOf(scene, camera, motion, duration, sensor, Fine());
+  const events::EventColumns events = EventsOf(scene, camera, motion, duration, sensor, Fine());
   EXPECT_GT(events.size(), 10'000u);
 
   std::vector<double> sum(48 * 36);
@@ -145,4 +147,4 @@ TEST(SensorChain, IntegratedEventsGiveBackTheLogChangeOfTheFrames) {
 }
 
 }  // namespace
-}  // namespace evo::test
+}  // namespace evo::simulation::test

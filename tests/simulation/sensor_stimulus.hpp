@@ -9,7 +9,7 @@
 
 #include "evo/simulation/event_sensor.hpp"
 
-namespace evo::test {
+namespace evo::simulation::test {
 
 /// Neither noise nor mismatch, blindness or low-pass: events where L crosses the thresholds.
 inline SensorOptions IdealSensor(double on, double off) {
@@ -59,14 +59,14 @@ class Show {
     }
   }
   /// From time `from` to `to`, both included, every `step`.
-  const EventColumns& Run(TimeNs from, TimeNs to, TimeNs step, const Stimulus& stimulus) {
+  const events::EventColumns& Run(TimeNs from, TimeNs to, TimeNs step, const Stimulus& stimulus) {
     for (TimeNs t = from; t <= to; t += step) At(t, stimulus);
     return events;
   }
 
   EventSensor sensor;
   std::vector<Tile> tiles;
-  EventColumns events;
+  events::EventColumns events;
 };
 
 struct PixelEvents {
@@ -74,7 +74,7 @@ struct PixelEvents {
   std::vector<int> polarity;
 };
 
-inline std::map<Pixel, PixelEvents> ByPixel(const EventColumns& events) {
+inline std::map<Pixel, PixelEvents> ByPixel(const events::EventColumns& events) {
   std::map<Pixel, PixelEvents> pixels;
   for (std::size_t i = 0; i < events.size(); ++i) {
     PixelEvents& pixel = pixels[{events.x[i], events.y[i]}];
@@ -84,8 +84,8 @@ inline std::map<Pixel, PixelEvents> ByPixel(const EventColumns& events) {
   return pixels;
 }
 
-inline int CountOf(const EventColumns& events, int polarity) {
+inline int CountOf(const events::EventColumns& events, int polarity) {
   return static_cast<int>(std::count(events.polarity.begin(), events.polarity.end(), polarity));
 }
 
-}  // namespace evo::test
+}  // namespace evo::simulation::test

@@ -8,9 +8,9 @@
 #include <tuple>
 #include <utility>
 
-#include "evo/simulation/random.hpp"
+#include "evo/core/random.hpp"
 
-namespace evo {
+namespace evo::simulation {
 namespace {
 
 constexpr double kDistance = 2.0;  // m, of the wall
@@ -20,27 +20,27 @@ constexpr TimeNs kDuration = 100'000'000;
 /// Everything that a simulation delivers.
 class Record : public SimulationSink {
  public:
-  void OnEvents(const EventColumns& block) override {
+  void OnEvents(const events::EventColumns& block) override {
     for (std::size_t i = 0; i < block.size(); ++i) {
       events.push_back(block.t[i], block.x[i], block.y[i], block.polarity[i]);
     }
   }
-  void OnImage(TimeNs t, const GreyImage& image, std::size_t before) override {
+  void OnImage(TimeNs t, const events::GreyImage& image, std::size_t before) override {
     image_stamps.push_back(t);
     images.push_back(image.grey);
     events_before.push_back(before);
   }
-  void OnDepth(TimeNs t, const DepthMap& depth) override {
+  void OnDepth(TimeNs t, const events::DepthMap& depth) override {
     depth_stamps.push_back(t);
     depth_maps.push_back(depth);
   }
 
-  EventColumns events;
+  events::EventColumns events;
   std::vector<TimeNs> image_stamps;
   std::vector<std::vector<std::uint8_t>> images;
   std::vector<std::size_t> events_before;
   std::vector<TimeNs> depth_stamps;
-  std::vector<DepthMap> depth_maps;
+  std::vector<events::DepthMap> depth_maps;
 };
 
 /// A wall of random blocks that fills the view.
@@ -56,7 +56,7 @@ Scene MakeWall() {
   wall.edge_v = {0.0, 8.0, 0.0};
   wall.texels = {80.0, 80.0};
   scene.surfaces.push_back(wall);
-  scene.bodies.push_back({[](TimeNs) { return SE3(); }});
+  scene.bodies.push_back({[](TimeNs) { return geometry::SE3(); }});
   return scene;
 }
 
@@ -78,8 +78,11 @@ class SimulateTest : public ::testing::Test {
   }
 
   Scene scene = MakeWall();
-  const Camera camera{Calibration{Distortion::kRadTan, 50, 40, 60.0, 60.0, 24.0, 20.0, {-0.1, 0.02, 0.0, 0.0, 0.0}}};
-  CameraMotion motion = [](TimeNs t) { return SE3(Eigen::Quaterniond::Identity(), {kSpeed * ToSeconds(t), 0.0, 0.0}); };
+  const geometry::Camera camera{geometry::Calibration{
+      geometry::Distortion::kRadTan, 50, 40, 60.0, 60.0, 24.0, 20.0, {-0.1, 0.02, 0.0, 0.0, 0.0}}};
+  CameraMotion motion = [](TimeNs t) {
+    return geometry::SE3(Eigen::Quaterniond::Identity(), {kSpeed * ToSeconds(t), 0.0, 0.0});
+  };
   SimulationOptions options;
 };
 
@@ -125,7 +128,7 @@ TEST_F(SimulateTest, DeliversInOrderOfTimeThenRowThenColumn) {
 }
 
 TEST_F(SimulateTest, ACameraAtRestSeesNothingButNoise) {
-  motion = [](TimeNs) { return SE3(); };
+  motion = [](TimeNs) { return geometry::SE3(); };
   Record record;
   const SimulationCounts counts = Run(Noiseless(), &record);
   EXPECT_EQ(record.events.size(), 0u);
@@ -157,7 +160,7 @@ Lighting LampsAlone() {
 /// log(1.5) - log(0.5) = 1.10 is crossed by three thresholds of 0.3 up and three down in each of twelve periods.
 TEST_F(SimulateTest, LampsFlickerInFullBetweenFewRenders) {
   scene.lighting = LampsAlone();
-  motion = [](TimeNs) { return SE3(); };
+  motion = [](TimeNs) { return geometry::SE3(); };
   SensorOptions sensor = Noiseless();
   sensor.threshold_on = 0.3;
   sensor.threshold_off = 0.3;
@@ -178,7 +181,9 @@ TEST_F(SimulateTest, LampsFlickerInFullBetweenFewRenders) {
 
 TEST_F(SimulateTest, FewRendersUnderLampsShowWhatManyDo) {
   scene.lighting = LampsAlone();
-  motion = [](TimeNs t) { return SE3(Eigen::Quaterniond::Identity(), {3.0 * ToSeconds(t), 0.0, 0.0}); };  // 90 px/s
+  motion = [](TimeNs t) {
+    return geometry::SE3(Eigen::Quaterniond::Identity(), {3.0 * ToSeconds(t), 0.0, 0.0});
+  };  // 90 px/s
   SensorOptions sensor = Noiseless();
   sensor.threshold_on = 0.2;
   Record few;
@@ -205,14 +210,14 @@ TEST_F(SimulateTest, FewRendersUnderLampsShowWhatManyDo) {
 TEST_F(SimulateTest, DepthAndPosesAgree) {
   motion = [](TimeNs t) {
     const double s = ToSeconds(t);
-    return SE3(so3::Exp({0.5 * s, -s, 0.8 * s}), {kSpeed * s, 0.0, 3.0 * s});
+    return geometry::SE3(geometry::so3::Exp({0.5 * s, -s, 0.8 * s}), {kSpeed * s, 0.0, 3.0 * s});
   };
   options.depth_hz = 50.0;
   Record record;
   Run(Noiseless(), &record);
   ASSERT_EQ(record.depth_maps.size(), 5u);
   for (std::size_t k = 0; k < record.depth_maps.size(); ++k) {
-    const SE3 T_world_cam = motion(record.depth_stamps[k]);
+    const geometry::SE3 T_world_cam = motion(record.depth_stamps[k]);
     for (int y = 0; y < camera.height(); y += 7) {
       for (int x = 0; x < camera.width(); x += 7) {
         const auto ray = camera.Undistort({x, y});
@@ -249,10 +254,10 @@ TEST_F(SimulateTest, ALeadInIsWhatTheCameraSawBefore) {
 TEST_F(SimulateTest, ImagesShowWhatTheMotionPredicts) {
   options.image_hz = 15.0;  // 0 and 1/15 s: one pixel apart
   options.samples = 4;
-  const Calibration ideal{Distortion::kRadTan, 50, 40, 60.0, 60.0, 24.0, 20.0, {}};
+  const geometry::Calibration ideal{geometry::Distortion::kRadTan, 50, 40, 60.0, 60.0, 24.0, 20.0, {}};
   ThreadPool pool(2);
   Record record;
-  Simulate(scene, Camera(ideal), motion, 0, kDuration, Noiseless(), options, 3, &pool, nullptr, &record);
+  Simulate(scene, geometry::Camera(ideal), motion, 0, kDuration, Noiseless(), options, 3, &pool, nullptr, &record);
   ASSERT_EQ(record.images.size(), 2u);
   int largest = 0;
   for (std::size_t y = 0; y < 40; ++y) {
@@ -265,4 +270,4 @@ TEST_F(SimulateTest, ImagesShowWhatTheMotionPredicts) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::simulation

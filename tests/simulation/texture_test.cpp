@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "evo/core/error.hpp"
-#include "evo/simulation/random.hpp"
+#include "evo/core/random.hpp"
 
-namespace evo {
+namespace evo::simulation {
 namespace {
 
 std::vector<Texel> Noise(int count, bool holes) {
@@ -86,4 +86,4 @@ TEST(Texture, QuickLog2IsCloseAndContinuous) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::simulation

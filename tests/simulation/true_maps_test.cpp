@@ -6,17 +6,17 @@
 
 #include "simulation/render_scene.hpp"
 
-namespace evo {
+namespace evo::simulation {
 namespace {
 
-const SE3 kPose(so3::Exp({0.05, -0.1, 0.2}), {0.3, -0.2, 0.5});
+const geometry::SE3 kPose(geometry::so3::Exp({0.05, -0.1, 0.2}), {0.3, -0.2, 0.5});
 constexpr TimeNs kTime = 40'000'000;
 
 TEST(DepthCamera, SeesWhatEachRayMeets) {
   const Scene scene = RandomScene(150, 6);
-  for (const Camera& camera : {Davis346(), Camera(Rectified(Davis346().calibration()))}) {
+  for (const geometry::Camera& camera : {Davis346(), geometry::Camera(geometry::Rectified(Davis346().calibration()))}) {
     ThreadPool pool(2);
-    const DepthMap map = DepthCamera(scene, camera, &pool).At(kTime, kPose);
+    const events::DepthMap map = DepthCamera(scene, camera, &pool).At(kTime, kPose);
     ASSERT_EQ(map.width, 346);
     ASSERT_EQ(map.height, 260);
     int seen = 0, moving = 0;
@@ -41,11 +41,11 @@ TEST(DepthCamera, SeesWhatEachRayMeets) {
 
 TEST(DepthCamera, IsTheSameForAnyNumberOfThreads) {
   const Scene scene = RandomScene(40, 6);
-  const Camera camera = Davis240();
+  const geometry::Camera camera = Davis240();
   ThreadPool one(1);
   ThreadPool three(3);
-  const DepthMap map = DepthCamera(scene, camera, &one).At(kTime, kPose);
-  const DepthMap same = DepthCamera(scene, camera, &three).At(kTime, kPose);
+  const events::DepthMap map = DepthCamera(scene, camera, &one).At(kTime, kPose);
+  const events::DepthMap same = DepthCamera(scene, camera, &three).At(kTime, kPose);
   EXPECT_EQ(map.moving, same.moving);
   for (std::size_t i = 0; i < map.depth.size(); ++i) {
     ASSERT_TRUE(map.depth[i] == same.depth[i] || (std::isnan(map.depth[i]) && std::isnan(same.depth[i]))) << i;
@@ -54,16 +54,22 @@ TEST(DepthCamera, IsTheSameForAnyNumberOfThreads) {
 
 class StaticFlowTest : public ::testing::Test {
  protected:
-  FlowMap Flow(const SE3& T_next_now) const { return StaticFlow(camera, depth, T_next_now); }
-  double Right(const FlowMap& map, int x, int y) const { return map.flow[static_cast<std::size_t>(y * 20 + x)]; }
-  double Down(const FlowMap& map, int x, int y) const { return map.flow[static_cast<std::size_t>(300 + y * 20 + x)]; }
+  events::FlowMap Flow(const geometry::SE3& T_next_now) const { return StaticFlow(camera, depth, T_next_now); }
+  double Right(const events::FlowMap& map, int x, int y) const {
+    return map.flow[static_cast<std::size_t>(y * 20 + x)];
+  }
+  double Down(const events::FlowMap& map, int x, int y) const {
+    return map.flow[static_cast<std::size_t>(300 + y * 20 + x)];
+  }
 
-  const Camera camera{Calibration{Distortion::kRadTan, 20, 15, 50.0, 40.0, 10.0, 7.0, {}}};
-  DepthMap depth{20, 15, std::vector<double>(300, 4.0)};
+  const geometry::Camera camera{
+      geometry::Calibration{geometry::Distortion::kRadTan, 20, 15, 50.0, 40.0, 10.0, 7.0, {}}};
+  events::DepthMap depth{20, 15, std::vector<double>(300, 4.0)};
 };
 
 TEST_F(StaticFlowTest, OfAStepSidewaysIsFocalLengthTimesStepOverDepth) {
-  const FlowMap map = Flow(SE3(Eigen::Quaterniond::Identity(), {-0.2, 0.1, 0.0}));  // camera goes right and up
+  const events::FlowMap map =
+      Flow(geometry::SE3(Eigen::Quaterniond::Identity(), {-0.2, 0.1, 0.0}));  // camera goes right and up
   for (const auto& [x, y] : {std::pair(0, 0), std::pair(19, 3), std::pair(7, 14)}) {
     EXPECT_NEAR(Right(map, x, y), -50.0 * 0.2 / 4.0, 1e-9);
     EXPECT_NEAR(Down(map, x, y), 40.0 * 0.1 / 4.0, 1e-9);
@@ -71,7 +77,8 @@ TEST_F(StaticFlowTest, OfAStepSidewaysIsFocalLengthTimesStepOverDepth) {
 }
 
 TEST_F(StaticFlowTest, OfAStepForwardExpandsFromTheAxis) {
-  const FlowMap map = Flow(SE3(Eigen::Quaterniond::Identity(), {0.0, 0.0, -1.0}));  // 4 m to 3 m: a third wider
+  const events::FlowMap map =
+      Flow(geometry::SE3(Eigen::Quaterniond::Identity(), {0.0, 0.0, -1.0}));  // 4 m to 3 m: a third wider
   EXPECT_NEAR(Right(map, 10, 7), 0.0, 1e-9);
   EXPECT_NEAR(Right(map, 16, 7), 2.0, 1e-9);
   EXPECT_NEAR(Down(map, 16, 1), -2.0, 1e-9);
@@ -79,8 +86,8 @@ TEST_F(StaticFlowTest, OfAStepForwardExpandsFromTheAxis) {
 
 TEST_F(StaticFlowTest, OfATurnDoesNotAskForDepth) {
   depth.depth[0] = 400.0;
-  const SE3 turn(so3::Exp({0.0, 0.0, 0.01}), Eigen::Vector3d::Zero());
-  const FlowMap map = Flow(turn);
+  const geometry::SE3 turn(geometry::so3::Exp({0.0, 0.0, 0.01}), Eigen::Vector3d::Zero());
+  const events::FlowMap map = Flow(turn);
   const Eigen::Vector2d place = camera.Project(turn * Eigen::Vector3d((0.0 - 10.0) / 50.0, (0.0 - 7.0) / 40.0, 1.0));
   EXPECT_NEAR(Right(map, 0, 0), place.x(), 1e-9);
   EXPECT_NEAR(Down(map, 0, 0), place.y(), 1e-9);
@@ -89,11 +96,11 @@ TEST_F(StaticFlowTest, OfATurnDoesNotAskForDepth) {
 TEST_F(StaticFlowTest, IsUnknownWhereTheDepthIsOrThePointIsPassed) {
   depth.depth[0] = std::nan("");
   depth.depth[1] = 0.5;
-  const FlowMap map = Flow(SE3(Eigen::Quaterniond::Identity(), {0.0, 0.0, -1.0}));
+  const events::FlowMap map = Flow(geometry::SE3(Eigen::Quaterniond::Identity(), {0.0, 0.0, -1.0}));
   EXPECT_TRUE(std::isnan(Right(map, 0, 0)));
   EXPECT_TRUE(std::isnan(Down(map, 1, 0)));
   EXPECT_FALSE(std::isnan(Right(map, 2, 0)));
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::simulation

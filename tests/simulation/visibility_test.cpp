@@ -5,7 +5,7 @@
 
 #include "simulation/render_scene.hpp"
 
-namespace evo {
+namespace evo::simulation {
 namespace {
 
 using Eigen::Vector2d;
@@ -14,22 +14,22 @@ using Eigen::Vector3d;
 struct Drive {
   TimeNs from = FromSeconds(0.2);
   TimeNs to = 0;
-  SE3 pose_from;
-  SE3 pose_to;
+  geometry::SE3 pose_from;
+  geometry::SE3 pose_to;
 };
 
 Drive RandomDrive(Random* random, double seconds) {
   Drive drive;
   drive.to = drive.from + FromSeconds(seconds);
-  drive.pose_from = SE3(so3::Exp(RandomVector(random, 0.5)), RandomVector(random, 5.0));
+  drive.pose_from = geometry::SE3(geometry::so3::Exp(RandomVector(random, 0.5)), RandomVector(random, 5.0));
   const Vector3d way = RandomVector(random, 10.0 * seconds);
-  drive.pose_to = SE3(drive.pose_from.rotation() * so3::Exp(RandomVector(random, 2.0 * seconds)),
-                      drive.pose_from.translation() + way);
+  drive.pose_to = geometry::SE3(drive.pose_from.rotation() * geometry::so3::Exp(RandomVector(random, 2.0 * seconds)),
+                                drive.pose_from.translation() + way);
   return drive;
 }
 
 TEST(FindVisible, NeverMissesASurface) {
-  const Camera lens = Davis346();
+  const geometry::Camera lens = Davis346();
   Random random(5);
   std::size_t named = 0;
   std::size_t hits = 0;
@@ -47,7 +47,8 @@ TEST(FindVisible, NeverMissesASurface) {
         const Vector2d pixel(tile.x0 - 0.5 + tile.width * random.Uniform(),
                              tile.y0 - 0.5 + tile.height * random.Uniform());
         const auto t = drive.from + static_cast<TimeNs>(s * static_cast<double>(drive.to - drive.from));
-        const Hit hit = CastRay(scene, *lens.Undistort(pixel), t, Interpolate(drive.pose_from, drive.pose_to, s));
+        const Hit hit =
+            CastRay(scene, *lens.Undistort(pixel), t, geometry::Interpolate(drive.pose_from, drive.pose_to, s));
         if (hit.surface < 0) continue;
         ++hits;
         ASSERT_TRUE(std::binary_search(visible.begin(), visible.end(), hit.surface)) << round << " " << hit.surface;
@@ -59,7 +60,7 @@ TEST(FindVisible, NeverMissesASurface) {
 }
 
 TEST(ImageSpeed, IsAnUpperBound) {
-  const Camera lens = Davis346();
+  const geometry::Camera lens = Davis346();
   Random random(8);
   double sum = 0.0;
   double bounds = 0.0;
@@ -78,8 +79,8 @@ TEST(ImageSpeed, IsAnUpperBound) {
         Vector3d moved = drive.pose_to.rotation().conjugate() * (drive.pose_from.rotation() * ray.homogeneous());
         if (hit.surface >= 0) {
           const int body = scene.surfaces[hit.surface].body;
-          const SE3 motion = drive.pose_to.Inverse() * BodyPose(scene, body, drive.to) *
-                             BodyPose(scene, body, drive.from).Inverse() * drive.pose_from;
+          const geometry::SE3 motion = drive.pose_to.Inverse() * BodyPose(scene, body, drive.to) *
+                                       BodyPose(scene, body, drive.from).Inverse() * drive.pose_from;
           moved = motion * (hit.depth * Vector3d(ray.homogeneous()));
         }
         if (moved.z() < 0.1 * (hit.surface < 0 ? 1.0 : hit.depth)) continue;
@@ -96,22 +97,23 @@ TEST(ImageSpeed, IsAnUpperBound) {
 }
 
 TEST(ImageSpeed, KnowsAWallAndTheSky) {
-  const Camera lens = Davis240();
+  const geometry::Camera lens = Davis240();
   const TimeNs t = FromSeconds(0.01);
   Scene scene = Empty();
   const Tile tile{124, 102, 16, 16};  // the middle, where a pixel is 1 / focal wide
   const Vector3d way(0.02, 0.0, 0.0);
   {
     const Renderer sky(scene, lens, 2);
-    EXPECT_EQ(sky.ImageSpeed(tile, All(scene), 0, t, SE3(), SE3({1, 0, 0, 0}, way)), 0.0);
-    const SE3 turned(so3::Exp({0.0, 0.01, 0.0}), Vector3d::Zero());
-    EXPECT_NEAR(sky.ImageSpeed(tile, All(scene), 0, t, SE3(), turned), 199.0, 4.0);
+    EXPECT_EQ(sky.ImageSpeed(tile, All(scene), 0, t, geometry::SE3(), geometry::SE3({1, 0, 0, 0}, way)), 0.0);
+    const geometry::SE3 turned(geometry::so3::Exp({0.0, 0.01, 0.0}), Vector3d::Zero());
+    EXPECT_NEAR(sky.ImageSpeed(tile, All(scene), 0, t, geometry::SE3(), turned), 199.0, 4.0);
   }
   scene.surfaces.push_back(Facing(-9, 9, -9, 9, 4));
   const Renderer wall(scene, lens, 2);
-  EXPECT_NEAR(wall.ImageSpeed(tile, All(scene), 0, t, SE3(), SE3({1, 0, 0, 0}, way)), 199.0 * 2.0 / 4.0, 2.0);
-  EXPECT_EQ(wall.ImageSpeed(tile, All(scene), 0, t, SE3(), SE3()), 0.0);
+  EXPECT_NEAR(wall.ImageSpeed(tile, All(scene), 0, t, geometry::SE3(), geometry::SE3({1, 0, 0, 0}, way)),
+              199.0 * 2.0 / 4.0, 2.0);
+  EXPECT_EQ(wall.ImageSpeed(tile, All(scene), 0, t, geometry::SE3(), geometry::SE3()), 0.0);
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::simulation

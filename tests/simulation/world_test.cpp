@@ -12,7 +12,7 @@
 #include "evo/simulation/scene_options.hpp"
 #include "evo/simulation/surface_tree.hpp"
 
-namespace evo {
+namespace evo::simulation {
 namespace {
 
 constexpr double kHalfCar = 0.9;  // half of the width that the camera's car takes, m
@@ -64,7 +64,7 @@ struct Place {
   Eigen::Vector3d position, forward, right;
 };
 Place LevelPlace(const SimulatedRun& run, double t) {
-  const SE3 pose = run.motion(FromSeconds(t));
+  const geometry::SE3 pose = run.motion(FromSeconds(t));
   Eigen::Vector3d forward = pose.rotation() * Eigen::Vector3d::UnitZ();
   forward.y() = 0.0;
   forward.normalize();
@@ -140,7 +140,7 @@ TEST(World, MovingCarsKeepToTheirLaneAndApart) {
         std::vector<Eigen::Vector3d> cars;
         const Place place = LevelPlace(run, t);
         for (std::size_t i = 1; i < run.scene.bodies.size(); ++i) {
-          const SE3 car = run.scene.bodies[i].T_world_body(FromSeconds(t));
+          const geometry::SE3 car = run.scene.bodies[i].T_world_body(FromSeconds(t));
           const Eigen::Vector3d offset = car.translation() - place.position;
           const double ahead = offset.dot(place.forward), across = offset.dot(place.right);
           // Where the camera passes it, an oncoming car is in the other lane; one ahead stays a car's length away.
@@ -222,4 +222,4 @@ TEST(World, BoxesAndPostersOfTheRoomAreNotMirrored) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::simulation

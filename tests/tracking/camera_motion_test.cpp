@@ -1,4 +1,4 @@
-#include "evo/tracking/camera_motion.hpp"
+#include "tracking/motion/camera_motion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "evo/geometry/known_cameras.hpp"
 
-namespace evo {
+namespace evo::tracking {
 namespace {
 
 using Eigen::Vector2d;
@@ -24,7 +24,7 @@ std::vector<CameraMotion> Motions() {
 }
 
 std::vector<PixelGeometry> Pixels() {
-  const LensGrid lens{Camera(MvsecDavis346())};
+  const LensGrid lens{geometry::Camera(geometry::MvsecDavis346())};
   std::vector<PixelGeometry> pixels;
   for (const Vector2d& pixel : {Vector2d(30, 20), Vector2d(200, 90), Vector2d(150, 220), Vector2d(320, 250)}) {
     pixels.push_back(lens.At(pixel));
@@ -92,4 +92,4 @@ TEST(FlowResidual, FadesWhereTheLineMeansLittle) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::tracking

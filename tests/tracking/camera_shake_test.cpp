@@ -1,4 +1,4 @@
-#include "evo/tracking/camera_shake.hpp"
+#include "tracking/smoothing/camera_shake.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 
 #include "evo/geometry/known_cameras.hpp"
 #include "evo/geometry/se3.hpp"
-#include "evo/tracking/track_buffer.hpp"
+#include "tracking/smoothing/track_buffer.hpp"
 
-namespace evo {
+namespace evo::tracking {
 namespace {
 
 using Eigen::Vector2d;
@@ -21,10 +21,10 @@ constexpr double kSmearS = 0.016;
 /// Points far away, seen by a camera that turns slowly and vibrates; each position is the mean over a window, each flow
 /// the slope over it. The sensor smears positions like a longer window.
 struct ShakyTracks {
-  Camera camera{MvsecDavis346()};
+  geometry::Camera camera{geometry::MvsecDavis346()};
   double amplitude_rad = 0.002;
   double frequency_hz = 12.0;
-  Tracks smoothed, exact;
+  events::Tracks smoothed, exact;
   std::vector<ObservedWindow> windows;
 
   Vector3d Turn(double t) const {
@@ -48,13 +48,13 @@ struct ShakyTracks {
         constexpr int kSteps = 40;
         for (int k = 0; k < kSteps; ++k) {
           const double share = (k + 0.5) * 2.0 / kSteps - 1.0;
-          const auto seen = [&](double reach) { return camera.Project(so3::Exp(Turn(t + reach * share)) * rays[i]); };
+          const auto seen = [&](double reach) { return camera.Project(geometry::so3::Exp(Turn(t + reach * share)) * rays[i]); };
           mean += seen(std::hypot(half, kSmearS)) / kSteps;
           slope += 3.0 * share / half * seen(half) / kSteps;
         }
         mean += noise_px * Vector2d(uniform() - 0.5, uniform() - 0.5);
         slope += noise_px / half * Vector2d(uniform() - 0.5, uniform() - 0.5);
-        const Vector2d now = camera.Project(so3::Exp(Turn(t)) * rays[i]);
+        const Vector2d now = camera.Project(geometry::so3::Exp(Turn(t)) * rays[i]);
         smoothed.push_back({static_cast<std::int64_t>(i), FromSeconds(t), mean.x(), mean.y()});
         exact.push_back({static_cast<std::int64_t>(i), FromSeconds(t), now.x(), now.y()});
         windows.push_back({static_cast<float>(half), slope.cast<float>()});
@@ -63,7 +63,7 @@ struct ShakyTracks {
   }
 
   /// Root mean square over the tracks with long windows.
-  double Error(const Tracks& tracks, double from_s = 0.0, double to_s = 1e9) const {
+  double Error(const events::Tracks& tracks, double from_s = 0.0, double to_s = 1e9) const {
     double sum = 0.0;
     int count = 0;
     for (std::size_t i = 0; i < tracks.size(); ++i) {
@@ -77,23 +77,23 @@ struct ShakyTracks {
 };
 
 /// All of them, taken for one stretch.
-Tracks Restored(const ShakyTracks& scene) {
-  Tracks restored = scene.smoothed;
+events::Tracks Restored(const ShakyTracks& scene) {
+  events::Tracks restored = scene.smoothed;
   RestoreShake(scene.camera, LensGrid(scene.camera), scene.smoothed, scene.windows, 0, restored);
   return restored;
 }
 
 /// Through a buffer, frame by frame.
-Tracks RestoredInPassing(const Camera& camera, const Tracks& smoothed, std::span<const ObservedWindow> windows,
-                         int threads) {
+events::Tracks RestoredInPassing(const geometry::Camera& camera, const events::Tracks& smoothed,
+                                 std::span<const ObservedWindow> windows, int threads) {
   ThreadPool pool(threads);
-  Tracks restored;
+  events::Tracks restored;
   TrackBuffer buffer(camera, {}, &pool,
-                     [&](const Tracks& next) { restored.insert(restored.end(), next.begin(), next.end()); });
+                     [&](const events::Tracks& next) { restored.insert(restored.end(), next.begin(), next.end()); });
   for (std::size_t i = 0, end = 0; i < smoothed.size(); i = end) {
     while (end < smoothed.size() && smoothed[end].t == smoothed[i].t) ++end;
     const auto frame = std::span(smoothed).subspan(i, end - i);
-    buffer.Add(smoothed[i].t, Tracks(frame.begin(), frame.end()), windows.subspan(i, end - i), {});
+    buffer.Add(smoothed[i].t, events::Tracks(frame.begin(), frame.end()), windows.subspan(i, end - i), {});
   }
   buffer.Finish();
   return restored;
@@ -114,8 +114,8 @@ TEST(RestoreShake, DoesSoForShortFramesToo) {
 
 TEST(RestoreShake, DoesSoInPassingForAnyNumberOfThreads) {
   const ShakyTracks scene(0.1, 0.002, 0.02, 24.0);
-  const Tracks one = RestoredInPassing(scene.camera, scene.smoothed, scene.windows, 1);
-  const Tracks three = RestoredInPassing(scene.camera, scene.smoothed, scene.windows, 3);
+  const events::Tracks one = RestoredInPassing(scene.camera, scene.smoothed, scene.windows, 1);
+  const events::Tracks three = RestoredInPassing(scene.camera, scene.smoothed, scene.windows, 3);
   ASSERT_EQ(one.size(), scene.smoothed.size());
   EXPECT_TRUE(one == three);
   for (double from = 0.0; from < 24.0; from += 2.5) {  // also where stretches meet
@@ -128,9 +128,9 @@ TEST(RestoreShake, LeavesAloneWhatTellsNothing) {
   EXPECT_TRUE(Restored(slow) == slow.smoothed);
   // A gap of an hour, equal stamps, a window longer than any.
   const TimeNs hour = 3600 * kNsPerSecond;
-  const Tracks few = {{1, 0, 100, 100}, {1, 0, 101, 100}, {1, hour, 102, 100}, {2, hour, 5, 5}};
+  const events::Tracks few = {{1, 0, 100, 100}, {1, 0, 101, 100}, {1, hour, 102, 100}, {2, hour, 5, 5}};
   const std::vector<ObservedWindow> windows(few.size(), {1.0f, {50.0f, 0.0f}});
-  const Tracks restored = RestoredInPassing(slow.camera, few, windows, 1);
+  const events::Tracks restored = RestoredInPassing(slow.camera, few, windows, 1);
   ASSERT_EQ(restored.size(), 3u);  // a feature seen once is none
   EXPECT_EQ(restored[2].x, 102);
 }
@@ -141,7 +141,7 @@ TEST(RestoreShake, FramesMayFollowOneAnotherMuchSoonerThanTheFirstTwo) {
   for (auto& observation : scene.smoothed) {
     if (observation.t == 0) observation.t -= 19'000'000;
   }
-  const Tracks restored = Restored(scene);
+  const events::Tracks restored = Restored(scene);
   EXPECT_LT(scene.Error(restored, 0.001), 2.0 * scene.Error(scene.smoothed, 0.001));
 }
 
@@ -158,4 +158,4 @@ TEST(RestoreShake, LeavesInstantsAlone) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::tracking

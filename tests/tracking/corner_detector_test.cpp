@@ -1,4 +1,4 @@
-#include "evo/tracking/corner_detector.hpp"
+#include "tracking/detection/corner_detector.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "tracking/synthetic_events.hpp"
 
-namespace evo {
+namespace evo::tracking {
 namespace {
 
 const auto kAny = [](const Eigen::Vector2d&) { return true; };
@@ -124,9 +124,9 @@ TEST(DetectCorners, FindsTheSameWithAnyNumberOfThreads) {
 TEST(DetectCorners, FindsNothingInATinyImage) { EXPECT_TRUE(Detect(cv::Mat::ones(9, 9, CV_32F), {}, 10).empty()); }
 
 TEST(CorrectedEventImage, IsSharperThanTheRawOne) {
-  const evo::testing::CrossScene scene(40, 2);
+  const evo::tracking::testing::CrossScene scene(40, 2);
   const TrackerOptions options;
-  EventHistory history(scene.width, scene.height);
+  events::EventHistory history(scene.width, scene.height);
   history.Append(scene.Events([](double t) { return Vector2d(Vector2d(150.0, 150.0) * (t - 0.1)); }, 0.2, 1000.0));
   ThreadPool pool(1);
   FlowField flow(scene.width, scene.height, options);
@@ -150,4 +150,4 @@ TEST(CorrectedEventImage, IsSharperThanTheRawOne) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::tracking

@@ -1,4 +1,4 @@
-#include "evo/tracking/density_map.hpp"
+#include "tracking/patch/density_map.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-namespace evo {
+namespace evo::tracking {
 namespace {
 
 TEST(DensityMap, VotesAreBilinearAndLoseNothingInside) {
@@ -263,4 +263,4 @@ TEST(AssociationField, KeepsPolaritiesApart) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::tracking

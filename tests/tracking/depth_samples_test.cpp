@@ -1,8 +1,8 @@
-#include "evo/tracking/depth_samples.hpp"
+#include "tracking/motion/depth_samples.hpp"
 
 #include <gtest/gtest.h>
 
-namespace evo {
+namespace evo::tracking {
 namespace {
 
 using Eigen::Vector2d;
@@ -58,4 +58,4 @@ TEST(UsualInverseDepth, IsTheMedianOfTheNearest) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::tracking

@@ -1,4 +1,4 @@
-#include "evo/tracking/ego_motion.hpp"
+#include "tracking/motion/ego_motion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "evo/geometry/known_cameras.hpp"
 #include "evo/geometry/se3.hpp"
 
-namespace evo {
+namespace evo::tracking {
 namespace {
 
 using Eigen::Matrix2d;
@@ -20,13 +20,13 @@ constexpr double kFrame = 0.02;  // s
 
 /// A camera that moves with `velocity` (m/s) while the world turns about it with `turn_rate` (rad/s).
 struct Mover {
-  Camera camera{MvsecDavis346()};
+  geometry::Camera camera{geometry::MvsecDavis346()};
   Vector3d velocity{0.4, -0.3, 8.0};
   Vector3d turn_rate{0.05, -0.2, 0.1};
 
   /// Where a point, given in camera coordinates at time 0, is seen at `t`.
   Vector2d Seen(const Vector3d& point, double t) const {
-    return camera.Project(so3::Exp(t * turn_rate) * Vector3d(point - t * velocity));
+    return camera.Project(geometry::so3::Exp(t * turn_rate) * Vector3d(point - t * velocity));
   }
   FlowSample Sample(const Vector3d& point) const {
     return {Seen(point, 0.0), (Seen(point, kStep) - Seen(point, -kStep)) / (2.0 * kStep)};
@@ -125,11 +125,11 @@ TEST(EgoMotion, HasNoDirectionWhereTheCameraStandsOrTurns) {
 
 TEST(EgoMotion, SaysNothingWhereTheLensHasNoInverse) {
   // Barrel distortion so strong that the corners of the image lie outside the model.
-  Calibration calibration = MvsecDavis346();
-  calibration.distortion = Distortion::kRadTan;
+  geometry::Calibration calibration = geometry::MvsecDavis346();
+  calibration.distortion = geometry::Distortion::kRadTan;
   calibration.coefficients = {-0.45, 0.0, 0.0, 0.0, 0.0};
   Mover mover;
-  mover.camera = Camera(calibration);
+  mover.camera = geometry::Camera(calibration);
   ASSERT_FALSE(mover.camera.Undistort({2, 2}));
   EgoMotion motion(mover.camera);
   auto samples = Flows(mover, 80, 0.0, 3);
@@ -256,4 +256,4 @@ TEST(EgoMotion, TellsHowNearAPointIsAndWillBe) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::tracking

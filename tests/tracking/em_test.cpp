@@ -4,23 +4,23 @@
 #include <cmath>
 #include <random>
 
-#include "evo/tracking/em_affine.hpp"
-#include "evo/tracking/em_flow.hpp"
-#include "evo/tracking/flow_field.hpp"
+#include "tracking/detection/flow_field.hpp"
+#include "tracking/patch/em_affine.hpp"
+#include "tracking/patch/em_flow.hpp"
 #include "tracking/synthetic_events.hpp"
 
-namespace evo {
+namespace evo::tracking {
 namespace {
 
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
 /// Events of edges near the centre under a known motion of the patch, with pixel noise.
-LocalEvents PatchEvents(const PatchMotion& motion, double half_window_s, int count, unsigned seed) {
+events::LocalEvents PatchEvents(const PatchMotion& motion, double half_window_s, int count, unsigned seed) {
   std::mt19937 random(seed);
   const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
   const Vector2d corners[] = {{-9, -7}, {8, -9}, {10, 6}, {-6, 9}, {0, 1}, {3, -2}};
-  LocalEvents events;
+  events::LocalEvents events;
   for (int i = 0; i < count; ++i) {
     const int edge = static_cast<int>(uniform() * 5.0);
     const Vector2d u = corners[edge] + uniform() * (corners[edge + 1] - corners[edge]);
@@ -34,7 +34,7 @@ LocalEvents PatchEvents(const PatchMotion& motion, double half_window_s, int cou
   return events;
 }
 
-DensityMap TemplateOf(const LocalEvents& events) {
+DensityMap TemplateOf(const events::LocalEvents& events) {
   DensityMap map(19, 2);
   for (std::size_t i = 0; i < events.size(); ++i) {
     map.Vote(events.x[i], events.y[i], map.PlaneOf(events.polarity[i]), 1.0f);
@@ -45,7 +45,8 @@ DensityMap TemplateOf(const LocalEvents& events) {
 TEST(FlowEstimator, RefinesAFlowThatMovesThePatchAFewPixels) {
   for (const Vector2d& truth : {Vector2d(150, 40), Vector2d(-80, -160), Vector2d(0, 30)}) {
     const double half_window = 2.0 / truth.norm();
-    const LocalEvents events = PatchEvents({Vector2d::Zero(), truth, Matrix2d::Identity()}, half_window, 400, 5);
+    const events::LocalEvents events =
+        PatchEvents({Vector2d::Zero(), truth, Matrix2d::Identity()}, half_window, 400, 5);
     FlowEstimator estimator(17, 2, {1.0, 1.5, 0.2, 50});
     Vector2d flow = 0.6 * truth;
     const double share = estimator.Refine(events, half_window, &flow);
@@ -58,7 +59,7 @@ TEST(FlowEstimator, CoarseCellsComeNear) {
   for (int seed = 1; seed <= 5; ++seed) {
     const Vector2d truth(120, -60);
     const double half_window = 2.0 / truth.norm();
-    const LocalEvents events =
+    const events::LocalEvents events =
         PatchEvents({Vector2d::Zero(), truth, Matrix2d::Identity()}, half_window, 400, static_cast<unsigned>(seed));
     FlowEstimator estimator(17, 2, {2.0, 1.5, 0.2, 50});
     Vector2d flow = 0.5 * truth;
@@ -68,10 +69,10 @@ TEST(FlowEstimator, CoarseCellsComeNear) {
 }
 
 TEST(EstimateFlow, FindsSlowAndFastFlowsFromNothing) {
-  const evo::testing::CrossScene scene(60, 11);
+  const evo::tracking::testing::CrossScene scene(60, 11);
   const TrackerOptions options;
   for (const Vector2d& truth : {Vector2d(30, -10), Vector2d(120, 60), Vector2d(-350, 100)}) {
-    EventHistory history(scene.width, scene.height);
+    events::EventHistory history(scene.width, scene.height);
     history.Append(scene.Events([&](double t) { return Vector2d(truth * (t - 0.1)); }, 0.2, 1000.0));
     int good = 0;
     int estimated = 0;
@@ -90,7 +91,7 @@ TEST(EstimateFlow, FindsSlowAndFastFlowsFromNothing) {
 }
 
 TEST(EstimateFlow, SaysWhereThereIsNothing) {
-  const EventHistory history(50, 50);
+  const events::EventHistory history(50, 50);
   Vector2d flow = Vector2d::Zero();
   EXPECT_FALSE(EstimateFlow(history, 0, 25, 25, TrackerOptions{}, &flow));
 }
@@ -104,7 +105,7 @@ TEST(AlignToTemplate, RecoversAKnownAffineMotion) {
   truth.offset = {1.7, -1.1};
   truth.flow = {90, -40};
   truth.linear << 1.06, 0.02, -0.03, 1.04;
-  const LocalEvents events = PatchEvents(truth, 0.02, 600, 2);
+  const events::LocalEvents events = PatchEvents(truth, 0.02, 600, 2);
 
   PatchMotion motion;
   motion.flow = {80, -30};
@@ -128,7 +129,7 @@ TEST(TemplatePoints, UndoTheMotionThatTheyAreGiven) {
   motion.perspective = {0.01, -0.015};
   motion.rate << 2.0, 0.3, -0.2, 1.5;
   motion.bend = {0.02, 0.03};
-  LocalEvents events;
+  events::LocalEvents events;
   std::vector<Vector2d> truth;
   const double dt = 0.01;
   for (int x = -8; x <= 8; x += 4) {
@@ -160,7 +161,7 @@ TEST(AlignToTemplate, OneStepIsTheLeastSquaresOfThePulls) {
   PatchMotion truth;
   truth.offset = {0.7, -0.4};
   truth.flow = {40, -30};
-  const LocalEvents events = PatchEvents(truth, 0.02, 611, 2);
+  const events::LocalEvents events = PatchEvents(truth, 0.02, 611, 2);
   PatchMotion motion;
   motion.flow = {35, -25};
   motion.perspective = {0.004, -0.002};
@@ -196,7 +197,7 @@ TEST(AlignToTemplate, WhatLiesOutsideChangesNothing) {
   const DensityMap map = TemplateOf(PatchEvents({}, 0.01, 2000, 1));
   AssociationField field;
   field.Build(map, 1.0, 0.2);
-  LocalEvents events = PatchEvents({}, 0.01, 300, 3);
+  events::LocalEvents events = PatchEvents({}, 0.01, 300, 3);
   const AlignmentOptions options{20, 15.0, 0.01, 20.0, 10.0};
   PatchMotion alone;
   alone.offset = {0.5, 0.3};
@@ -216,7 +217,7 @@ TEST(AlignToTemplate, WhatLiesOutsideChangesNothing) {
 
 TEST(AlignToTemplate, LeavesAnAlignedWindowWhereItIs) {
   // A blurred density pulls even perfectly aligned events inwards; the template must not shrink for it.
-  const LocalEvents events = PatchEvents({}, 0.01, 2000, 1);
+  const events::LocalEvents events = PatchEvents({}, 0.01, 2000, 1);
   const DensityMap map = TemplateOf(events);
   AssociationField field;
   field.Build(map, 1.0, 0.2);
@@ -235,8 +236,8 @@ TEST(AlignToTemplate, TellsForeignEventsFromItsOwn) {
   field.Build(map, 1.0, 0.2);
   PatchMotion elsewhere;
   elsewhere.linear << 0.0, 1.0, -1.0, 0.0;
-  const LocalEvents own = PatchEvents({}, 0.01, 500, 3);
-  const LocalEvents foreign = PatchEvents(elsewhere, 0.01, 500, 4);
+  const events::LocalEvents own = PatchEvents({}, 0.01, 500, 3);
+  const events::LocalEvents foreign = PatchEvents(elsewhere, 0.01, 500, 4);
   PatchMotion a, b;
   const AlignmentOptions options{20, 15.0, 0.01, 20.0, 50.0, field.OwnMoments(map, Matrix2d::Identity(), 15.0)};
   EXPECT_GT(AlignToTemplate(own, field, 2, options, true, &a).inlier_share,
@@ -244,4 +245,4 @@ TEST(AlignToTemplate, TellsForeignEventsFromItsOwn) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::tracking

@@ -1,4 +1,4 @@
-#include "evo/tracking/epipolar_filter.hpp"
+#include "tracking/motion/epipolar_filter.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "evo/geometry/known_cameras.hpp"
 #include "evo/geometry/se3.hpp"
 
-namespace evo {
+namespace evo::tracking {
 namespace {
 
 using Eigen::Vector2d;
@@ -45,7 +45,7 @@ class Drive {
     for (int k = 0; k <= 30; ++k) {
       const Vector3d turn(0.004 * normal(random_), 0.004 * normal(random_) + 0.002, 0.004 * normal(random_));
       if (k > 0) {
-        for (auto& point : points_) point = so3::Exp(turn) * (point - kStepS * heading(k).normalized());
+        for (auto& point : points_) point = geometry::so3::Exp(turn) * (point - kStepS * heading(k).normalized());
       }
       std::vector<FeatureStep> steps;
       std::vector<Vector2d> truth, noisy;
@@ -73,7 +73,7 @@ class Drive {
   }
 
  private:
-  Camera camera_{MvsecDavis346()};
+  geometry::Camera camera_{geometry::MvsecDavis346()};
   LensGrid lens_{camera_};
   std::mt19937 random_;
   std::vector<Vector3d> points_;
@@ -98,7 +98,7 @@ TEST(EpipolarFilter, KeepsItsHandsOffAHandHeldCamera) {
 }
 
 TEST(EpipolarFilter, AThingThatMovesByItselfKeepsItsPosition) {
-  const Camera camera(MvsecDavis346());
+  const geometry::Camera camera(geometry::MvsecDavis346());
   const LensGrid lens(camera);
   std::vector<FeatureStep> steps;
   for (int i = 0; i < 60; ++i) {
@@ -113,7 +113,7 @@ TEST(EpipolarFilter, AThingThatMovesByItselfKeepsItsPosition) {
 }
 
 TEST(EpipolarFilter, DoesNothingWithTooFewFeatures) {
-  const Camera camera(MvsecDavis346());
+  const geometry::Camera camera(geometry::MvsecDavis346());
   const LensGrid lens(camera);
   std::vector<FeatureStep> steps;
   for (int i = 0; i < 15; ++i) steps.push_back({Vector2d(20.0 * i, 100.0), Vector2d(20.0 * i + 2.0, 101.0), 0.5});
@@ -122,4 +122,4 @@ TEST(EpipolarFilter, DoesNothingWithTooFewFeatures) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::tracking

@@ -1,10 +1,10 @@
-#include "evo/tracking/flow_field.hpp"
+#include "tracking/detection/flow_field.hpp"
 
 #include <gtest/gtest.h>
 
-#include "synthetic_events.hpp"
+#include "tracking/synthetic_events.hpp"
 
-namespace evo {
+namespace evo::tracking {
 namespace {
 
 using Eigen::Vector2d;
@@ -19,10 +19,10 @@ double ShareRight(const FlowField& field, int width, int height, const Vector2d&
 }
 
 TEST(FlowField, StartsFromTheGuessWhereNoFeatureIs) {
-  const evo::testing::CrossScene scene(40, 2);
+  const evo::tracking::testing::CrossScene scene(40, 2);
   const Vector2d velocity(1500.0, 875.0);
   const TrackerOptions options;
-  EventHistory history(scene.width, scene.height);
+  events::EventHistory history(scene.width, scene.height);
   // So fast that a short window does not find it from rest.
   history.Append(scene.Events([&](double t) { return Vector2d(velocity * (t - 0.05)); }, 0.1, 500.0));
   ThreadPool pool(1);
@@ -37,7 +37,7 @@ TEST(FlowField, StartsFromTheGuessWhereNoFeatureIs) {
 
 TEST(FlowField, TakesTheFlowOfFeaturesNearby) {
   const TrackerOptions options;
-  const EventHistory history(120, 90);
+  const events::EventHistory history(120, 90);
   ThreadPool pool(1);
   FlowField field(120, 90, options);
   field.Update(
@@ -47,4 +47,4 @@ TEST(FlowField, TakesTheFlowOfFeaturesNearby) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::tracking

@@ -1,10 +1,10 @@
-#include "evo/tracking/harris.hpp"
+#include "tracking/detection/harris.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace evo {
+namespace evo::tracking {
 namespace {
 
 constexpr int kWidth = 60;
@@ -75,4 +75,4 @@ TEST(Harris, StaysZeroAtTheBorderWhateverCameBefore) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::tracking

@@ -1,4 +1,4 @@
-#include "evo/tracking/jolt.hpp"
+#include "tracking/motion/jolt.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "evo/geometry/known_cameras.hpp"
-#include "evo/tracking/lens_grid.hpp"
+#include "tracking/motion/lens_grid.hpp"
 
-namespace evo {
+namespace evo::tracking {
 namespace {
 
 using Eigen::Vector2d;
@@ -31,7 +31,7 @@ std::vector<UnexpectedMotion> Motions(const LensGrid& lens, int count, double no
 }
 
 TEST(Jolt, IsTheTurnThatAllShare) {
-  const LensGrid lens{Camera(MvsecDavis346())};
+  const LensGrid lens{geometry::Camera(geometry::MvsecDavis346())};
   const auto motions = Motions(lens, 60, 0.0, 1);
   const Jolt jolt = FindJolt(motions);
   EXPECT_LT((jolt.turn - kTurn).norm(), 1e-4);
@@ -42,7 +42,7 @@ TEST(Jolt, IsTheTurnThatAllShare) {
 }
 
 TEST(Jolt, WithstandsNoiseAndFeaturesThatWentAstray) {
-  const LensGrid lens{Camera(MvsecDavis346())};
+  const LensGrid lens{geometry::Camera(geometry::MvsecDavis346())};
   for (unsigned seed = 1; seed <= 5; ++seed) {
     auto motions = Motions(lens, 100, 0.5, seed);
     for (std::size_t i = 0; i < 20; ++i) motions[5 * i].offset = Vector2d(6.0, 0.0);
@@ -54,7 +54,7 @@ TEST(Jolt, WithstandsNoiseAndFeaturesThatWentAstray) {
 }
 
 TEST(Jolt, IsNoneWithTooFewFeatures) {
-  const LensGrid lens{Camera(MvsecDavis346())};
+  const LensGrid lens{geometry::Camera(geometry::MvsecDavis346())};
   const Jolt jolt = FindJolt(Motions(lens, 8, 0.0, 1));
   EXPECT_EQ(jolt.motion_px, 0.0);
   EXPECT_TRUE(jolt.turn.isZero(0.0));
@@ -62,4 +62,4 @@ TEST(Jolt, IsNoneWithTooFewFeatures) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::tracking

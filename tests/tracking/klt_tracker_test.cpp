@@ -1,4 +1,4 @@
-#include "evo/tracking/klt_tracker.hpp"
+#include "tracking/baseline/klt_tracker.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,14 +9,14 @@
 #include "evo/core/error.hpp"
 #include "tracking/track_all.hpp"
 
-namespace evo {
+namespace evo::tracking {
 namespace {
 
 using Eigen::Vector2d;
-using evo::testing::ById;
-using evo::testing::CrossScene;
-using evo::testing::TrackAll;
-using evo::testing::TrackedStream;
+using evo::tracking::testing::ById;
+using evo::tracking::testing::CrossScene;
+using evo::tracking::testing::TrackAll;
+using evo::tracking::testing::TrackedStream;
 
 constexpr int kAnyNumber = 1'000'000;
 
@@ -46,7 +46,8 @@ TEST(KltTracker, FollowsASceneThatTurnsBack) {
 }
 
 /// By how many seconds the positions lag behind the crosses, in a scene of constant speed.
-double MeanLag(const EventColumns& events, const CrossScene& scene, double speed, const TrackerOptions& options) {
+double MeanLag(const events::EventColumns& events, const CrossScene& scene, double speed,
+               const TrackerOptions& options) {
   double sum = 0.0;
   int count = 0;
   for (const auto& observation : TrackAll(events, options).tracks) {
@@ -65,7 +66,7 @@ double MeanLag(const EventColumns& events, const CrossScene& scene, double speed
 TEST(KltTracker, PositionsAreLateByHalfAWindow) {
   const CrossScene scene(60, 4);
   for (const double speed : {150.0, -150.0}) {
-    const EventColumns events = scene.Events([&](double t) { return Vector2d(speed * t, 0); }, 0.4, 1000.0);
+    const events::EventColumns events = scene.Events([&](double t) { return Vector2d(speed * t, 0); }, 0.4, 1000.0);
     EXPECT_NEAR(MeanLag(events, scene, speed, KltWith(kAnyNumber, 0.01)), 0.005, 0.002);
     EXPECT_NEAR(MeanLag(events, scene, speed, KltWith(kAnyNumber, 0.03)), 0.015, 0.002);
     const double rate_hz = static_cast<double>(events.size()) / 0.4;
@@ -75,8 +76,8 @@ TEST(KltTracker, PositionsAreLateByHalfAWindow) {
 
 TEST(KltTracker, NoTrackOutlivesAChangeOfScene) {
   const auto rest = [](double) -> Vector2d { return Vector2d::Zero(); };
-  EventColumns events = CrossScene(75, 4).Events(rest, 0.3);
-  const EventColumns other = CrossScene(75, 5).Events(rest, 0.3);
+  events::EventColumns events = CrossScene(75, 4).Events(rest, 0.3);
+  const events::EventColumns other = CrossScene(75, 5).Events(rest, 0.3);
   for (std::size_t i = 0; i < other.size(); ++i) {
     events.push_back(other.t[i] + FromSeconds(0.3), other.x[i], other.y[i], other.polarity[i]);
   }
@@ -92,11 +93,12 @@ TEST(KltTracker, NoTrackOutlivesAChangeOfScene) {
 }
 
 TEST(KltTracker, SameTracksForAnyNumberOfThreads) {
-  const EventColumns events = CrossScene(75, 4).Events([](double t) { return Vector2d(120 * t, 30 * t); }, 0.4, 1000.0);
-  const Tracks one = TrackAll(events, KltWith(3000, 0.1), 1).tracks;
-  const Tracks three = TrackAll(events, KltWith(3000, 0.1), 3).tracks;
+  const events::EventColumns events =
+      CrossScene(75, 4).Events([](double t) { return Vector2d(120 * t, 30 * t); }, 0.4, 1000.0);
+  const events::Tracks one = TrackAll(events, KltWith(3000, 0.1), 1).tracks;
+  const events::Tracks three = TrackAll(events, KltWith(3000, 0.1), 3).tracks;
   ASSERT_GT(one.size(), 100U);
-  const auto same = [](const TrackObservation& a, const TrackObservation& b) {
+  const auto same = [](const events::TrackObservation& a, const events::TrackObservation& b) {
     return a.id == b.id && a.t == b.t && a.x == b.x && a.y == b.y;
   };
   EXPECT_TRUE(std::ranges::equal(one, three, same));
@@ -121,4 +123,4 @@ TEST(TrackerOptions, RefusesWhatIsNoMethodAndNoImage) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::tracking

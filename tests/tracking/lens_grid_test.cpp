@@ -1,4 +1,4 @@
-#include "evo/tracking/lens_grid.hpp"
+#include "tracking/motion/lens_grid.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,14 +7,14 @@
 #include "evo/geometry/known_cameras.hpp"
 #include "evo/geometry/se3.hpp"
 
-namespace evo {
+namespace evo::tracking {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 TEST(LensGrid, DerivativesAreThoseOfTheLens) {
-  const Camera camera(MvsecDavis346());
+  const geometry::Camera camera(geometry::MvsecDavis346());
   const LensGrid lens(camera);
   constexpr double kStep = 1e-6;
   for (const Vector2d& pixel : {Vector2d(20, 240), Vector2d(172, 128), Vector2d(332, 12)}) {
@@ -25,14 +25,14 @@ TEST(LensGrid, DerivativesAreThoseOfTheLens) {
       EXPECT_LT(((moved - pixel) / kStep - geometry.by_normalized.col(axis)).norm(), 0.1);
     }
     for (int axis = 0; axis < 3; ++axis) {
-      const Vector3d turned = so3::Exp(kStep * Vector3d::Unit(axis)) * geometry.normalized.homogeneous();
+      const Vector3d turned = geometry::so3::Exp(kStep * Vector3d::Unit(axis)) * geometry.normalized.homogeneous();
       EXPECT_LT(((camera.Project(turned) - pixel) / kStep - geometry.by_rotation.col(axis)).norm(), 0.1);
     }
   }
 }
 
 TEST(LensGrid, ExtrapolatesBetweenItsPoints) {
-  const Camera camera(MvsecDavis346());
+  const geometry::Camera camera(geometry::MvsecDavis346());
   const LensGrid lens(camera);
   for (const Vector2d& pixel : {Vector2d(21.7, 238.2), Vector2d(333.9, 10.1), Vector2d(100.5, 77.3)}) {
     EXPECT_LT((camera.Distort(lens.At(pixel).normalized) - pixel).norm(), 0.1);
@@ -40,4 +40,4 @@ TEST(LensGrid, ExtrapolatesBetweenItsPoints) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::tracking

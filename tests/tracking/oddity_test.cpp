@@ -1,11 +1,11 @@
-#include "evo/tracking/oddity.hpp"
+#include "tracking/gating/oddity.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 
-namespace evo {
+namespace evo::tracking {
 namespace {
 
 TEST(OddityMeans, AreOfWhatPersists) {
@@ -64,4 +64,4 @@ TEST(OddityJudge, JudgesNobodyWithFewToCompareWithOrWithoutAShare) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::tracking

@@ -3,9 +3,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "evo/tracking/tracker.hpp"
+#include "tracking/tracker.hpp"
 
-namespace evo {
+namespace evo::tracking {
 namespace {
 
 /// The frames of the first 20 in which new features are looked for, if so many are alive in each.
@@ -33,4 +33,4 @@ TEST(RefillPolicy, LooksSoonerWhereMostAreMissing) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::tracking

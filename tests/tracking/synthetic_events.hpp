@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "evo/events/event_columns.hpp"
+#include "evo/events/event_reader.hpp"
 #include "evo/geometry/camera.hpp"
-#include "evo/io/event_reader.hpp"
 
-namespace evo::testing {
+namespace evo::tracking::testing {
 
 /// Where the scene is shifted to at time t (s), px.
 using Motion = std::function<Eigen::Vector2d(double)>;
@@ -32,7 +32,8 @@ struct CrossScene {
     }
   }
 
-  EventColumns Events(const Motion& motion, double duration_s, double rate_hz = 500.0, unsigned seed = 3) const {
+  events::EventColumns Events(const Motion& motion, double duration_s, double rate_hz = 500.0,
+                              unsigned seed = 3) const {
     std::mt19937 random(seed);
     const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
     struct Event {
@@ -56,7 +57,7 @@ struct CrossScene {
       }
     }
     std::ranges::stable_sort(events, {}, &Event::t);
-    EventColumns columns;
+    events::EventColumns columns;
     for (const Event& e : events) {
       columns.push_back(e.t, static_cast<std::uint16_t>(e.x), static_cast<std::uint16_t>(e.y),
                         static_cast<std::int8_t>(e.sign));
@@ -66,22 +67,23 @@ struct CrossScene {
 };
 
 /// A camera of the scene's size, with a lens so long that whatever moves across it moves as a whole.
-inline Camera SceneCamera() {
-  Calibration calibration;
+inline geometry::Camera SceneCamera() {
+  geometry::Calibration calibration;
   calibration.width = 120;
   calibration.height = 90;
   calibration.fx = calibration.fy = 1000.0;
   calibration.cx = 60.0;
   calibration.cy = 45.0;
-  return Camera(calibration);
+  return geometry::Camera(calibration);
 }
 
 /// Events from memory, in blocks.
-class MemoryReader : public EventReader {
+class MemoryReader : public events::EventReader {
  public:
-  explicit MemoryReader(EventColumns events, std::size_t block = 1000) : events_(std::move(events)), block_(block) {}
+  explicit MemoryReader(events::EventColumns events, std::size_t block = 1000)
+      : events_(std::move(events)), block_(block) {}
 
-  bool Next(EventColumns* block) override {
+  bool Next(events::EventColumns* block) override {
     block->clear();
     for (std::size_t i = 0; i < block_ && next_ < events_.size(); ++i, ++next_) {
       block->push_back(events_.t[next_], events_.x[next_], events_.y[next_], events_.polarity[next_]);
@@ -93,9 +95,9 @@ class MemoryReader : public EventReader {
   double progress() const override { return static_cast<double>(next_) / static_cast<double>(events_.size()); }
 
  private:
-  EventColumns events_;
+  events::EventColumns events_;
   std::size_t block_;
   std::size_t next_ = 0;
 };
 
-}  // namespace evo::testing
+}  // namespace evo::tracking::testing

@@ -1,4 +1,4 @@
-#include "evo/tracking/track_buffer.hpp"
+#include "tracking/smoothing/track_buffer.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <set>
 
 #include "evo/geometry/known_cameras.hpp"
-#include "evo/tracking/tracker.hpp"
+#include "tracking/tracker.hpp"
 
-namespace evo {
+namespace evo::tracking {
 namespace {
 
 constexpr TimeNs kFrame = 20'000'000;
@@ -16,17 +16,17 @@ constexpr TimeNs kFrame = 20'000'000;
 /// A buffer that leaves positions alone and keeps what it passes on.
 struct KeepingBuffer {
   ThreadPool pool{2};
-  Tracks passed;
+  events::Tracks passed;
   std::size_t most_held = 0;
   TrackBuffer buffer;
 
   explicit KeepingBuffer(TrackerOptions options = {})
-      : buffer(Camera(MvsecDavis346()), options, &pool,
-               [this](const Tracks& next) { passed.insert(passed.end(), next.begin(), next.end()); }) {}
+      : buffer(geometry::Camera(geometry::MvsecDavis346()), options, &pool,
+               [this](const events::Tracks& next) { passed.insert(passed.end(), next.begin(), next.end()); }) {}
 
   /// The features `ids` in frame `frame`.
   void Add(int frame, const std::vector<std::int64_t>& ids, const std::vector<std::int64_t>& withdrawn = {}) {
-    Tracks seen;
+    events::Tracks seen;
     for (const auto id : ids) seen.push_back({id, frame * kFrame, 100.0 + static_cast<double>(id), 0.1 * frame});
     buffer.Add(frame * kFrame, seen, std::vector<ObservedWindow>(seen.size()), withdrawn);
     most_held = std::max(most_held, buffer.held().size());
@@ -46,7 +46,7 @@ TEST(TrackBuffer, PassesOnEverythingOnceInOrder) {
     buffer.buffer.Finish();
     ASSERT_EQ(buffer.passed.size(), 4u * static_cast<std::size_t>(frames));
     for (std::size_t i = 1; i < buffer.passed.size(); ++i) {
-      const auto key = [](const TrackObservation& o) { return std::pair(o.t, o.id); };
+      const auto key = [](const events::TrackObservation& o) { return std::pair(o.t, o.id); };
       ASSERT_LT(key(buffer.passed[i - 1]), key(buffer.passed[i]));
     }
   }
@@ -101,4 +101,4 @@ TEST(TrackBuffer, NothingSeenIsNothingPassedOn) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::tracking

@@ -11,16 +11,16 @@
 #include "evo/core/error.hpp"
 #include "tracking/track_all.hpp"
 
-namespace evo {
+namespace evo::tracking {
 namespace {
 
 using Eigen::Vector2d;
-using evo::testing::ById;
-using evo::testing::CrossScene;
-using evo::testing::Motion;
-using evo::testing::TrackAll;
-using evo::testing::TrackedStream;
-using evo::testing::TracksById;
+using evo::tracking::testing::ById;
+using evo::tracking::testing::CrossScene;
+using evo::tracking::testing::Motion;
+using evo::tracking::testing::TrackAll;
+using evo::tracking::testing::TrackedStream;
+using evo::tracking::testing::TracksById;
 
 constexpr double kDuration = 0.6;
 
@@ -49,18 +49,18 @@ double MedianNorm(const std::vector<Vector2d>& errors) {
 class TrackEventsTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    events = new EventColumns(CrossScene(75, 4).Events(ThereAndBack, kDuration, 1000.0));
+    events = new events::EventColumns(CrossScene(75, 4).Events(ThereAndBack, kDuration, 1000.0));
     result = new TrackedStream(TrackAll(*events, {}, 1));
   }
   static void TearDownTestSuite() {
     delete events;
     delete result;
   }
-  static EventColumns* events;
+  static events::EventColumns* events;
   static TrackedStream* result;
 };
 
-EventColumns* TrackEventsTest::events = nullptr;
+events::EventColumns* TrackEventsTest::events = nullptr;
 TrackedStream* TrackEventsTest::result = nullptr;
 
 TEST_F(TrackEventsTest, TracksFollowASceneThatTurnsBack) {
@@ -110,8 +110,8 @@ TEST(TrackEvents, FeaturesOutliveAStop) {
   };
   std::vector<Vector2d> errors;
   for (unsigned seed = 4; seed < 12; ++seed) {
-    const EventColumns all = CrossScene(60, seed).Events(moved, 1.2, 1000.0);
-    EventColumns events;
+    const events::EventColumns all = CrossScene(60, seed).Events(moved, 1.2, 1000.0);
+    events::EventColumns events;
     for (std::size_t i = 0; i < all.size(); ++i) {
       const double t = ToSeconds(all.t[i]);
       const double speed = (moved(t + 0.001) - moved(t - 0.001)).norm() / 0.002;
@@ -185,7 +185,7 @@ TEST_F(TrackEventsTest, ObservationsAreSortedUniqueAndAtFrameStamps) {
   for (std::size_t i = 0; i < result->tracks.size(); ++i) {
     EXPECT_TRUE(frames.contains(result->tracks[i].t));
     if (i == 0) continue;
-    const auto key = [](const TrackObservation& o) { return std::pair(o.t, o.id); };
+    const auto key = [](const events::TrackObservation& o) { return std::pair(o.t, o.id); };
     EXPECT_LT(key(result->tracks[i - 1]), key(result->tracks[i]));
   }
   EXPECT_EQ(result->events, events->size());
@@ -202,13 +202,13 @@ TEST_F(TrackEventsTest, SameTracksForAnyNumberOfThreads) {
 }
 
 TEST_F(TrackEventsTest, AHotPixelIsNoFeature) {
-  EventColumns hot;
+  events::EventColumns hot;
   for (TimeNs t = 0; t < 600'000'000; t += 100'000) hot.push_back(t, 60, 45, t % 200'000 ? 1 : -1);
   EXPECT_TRUE(TrackAll(hot, {}).tracks.empty());
 }
 
 TEST(TrackEvents, SaysWhenThereAreNoTwoFrames) {
-  EventColumns few;
+  events::EventColumns few;
   few.push_back(0, 1, 1, 1);
   few.push_back(1000, 2, 2, 1);
   try {
@@ -220,4 +220,4 @@ TEST(TrackEvents, SaysWhenThereAreNoTwoFrames) {
 }
 
 }  // namespace
-}  // namespace evo
+}  // namespace evo::tracking

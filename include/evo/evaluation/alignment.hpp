@@ -10,16 +10,16 @@
 #include "evo/evaluation/association.hpp"
 #include "evo/geometry/se3.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 
 /// p -> scale * R p + t: takes the estimate's world frame to that of the ground truth.
 struct Similarity {
   double scale = 1.0;
-  SE3 T_truth_estimate;
+  geometry::SE3 T_truth_estimate;
 
   Eigen::Vector3d operator*(const Eigen::Vector3d& point) const;
   /// The pose keeps its unit rotation; only its position is scaled.
-  SE3 operator*(const SE3& T_world_cam) const;
+  geometry::SE3 operator*(const geometry::SE3& T_world_cam) const;
 };
 
 /// How an estimate is laid over the ground truth before errors are taken: by a method, determined from all matched
@@ -52,4 +52,4 @@ std::vector<Alignment> ParseAlignments(const std::string& text);
 /// for the least-squares alignments.
 Similarity Align(std::span<const PosePair> pairs, const Alignment& alignment, const Eigen::Vector3d& up);
 
-}  // namespace evo
+}  // namespace evo::evaluation

@@ -6,14 +6,14 @@
 #include "evo/core/time.hpp"
 #include "evo/geometry/trajectory.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 
 /// One estimated pose and where the camera truly was at that time.
 struct PosePair {
   TimeNs t_estimate = 0;  ///< as written in the estimate
   TimeNs t_truth = 0;     ///< in the clock of the ground truth
-  SE3 T_world_cam_estimate;
-  SE3 T_world_cam_truth;
+  geometry::SE3 T_world_cam_estimate;
+  geometry::SE3 T_world_cam_truth;
 };
 
 struct AssociationOptions {
@@ -34,6 +34,7 @@ struct AssociationOptions {
 
 /// Pairs in order of time; empty where the trajectories do not overlap. O((n + m) log(n + m)). Throws Error (kInput)
 /// where "index" meets two lengths.
-std::vector<PosePair> Associate(const Trajectory& truth, const Trajectory& estimate, const AssociationOptions& options);
+std::vector<PosePair> Associate(const geometry::Trajectory& truth, const geometry::Trajectory& estimate,
+                                const AssociationOptions& options);
 
-}  // namespace evo
+}  // namespace evo::evaluation

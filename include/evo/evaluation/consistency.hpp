@@ -7,7 +7,7 @@
 #include "evo/evaluation/statistics.hpp"
 #include "evo/geometry/trajectory.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 
 /// How the errors of an estimate compare with what it says about its own uncertainty: squared errors over their
 /// covariances for one degree of freedom ("NEES", Y. Bar-Shalom, X. R. Li, T. Kirubarajan: Estimation with Applications
@@ -23,7 +23,7 @@ struct Consistency {
 /// estimate is laid over the truth at the pose that is certain, whose covariance is zero; if `fit_scale`, then scaled
 /// about it by least squares, as the covariances of a monocular path are meant. A run that was started anew has several
 /// such poses, each with those after it. Without any there are no errors, and the statistics are empty.
-Consistency MeasureConsistency(std::span<const PosePair> pairs, std::span<const StampedCovariance> covariances,
-                               bool fit_scale);
+Consistency MeasureConsistency(std::span<const PosePair> pairs,
+                               std::span<const geometry::StampedCovariance> covariances, bool fit_scale);
 
-}  // namespace evo
+}  // namespace evo::evaluation

@@ -8,7 +8,7 @@
 #include "evo/evaluation/position_search.hpp"
 #include "evo/geometry/trajectory.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 
 /// An error of position (estimate minus truth, m) as the driver would name it.
 struct DrivingError {
@@ -22,7 +22,7 @@ struct DrivingError {
 /// axis nearest to the mean of the camera's own up direction (its -y axis), which is -y for MVSEC (the world is the
 /// first camera frame: x right, y down, z forward) and z for frames made by surveyors, as long as the camera is held
 /// upright most of the time. A camera that looks down needs it given.
-Eigen::Vector3d UpDirection(const std::string& up, const Trajectory& truth);
+Eigen::Vector3d UpDirection(const std::string& up, const geometry::Trajectory& truth);
 
 /// Splits errors of position along the truth's direction, which is one of
 ///
@@ -36,18 +36,18 @@ Eigen::Vector3d UpDirection(const std::string& up, const Trajectory& truth);
 class DrivingFrame {
  public:
   /// `truth` must outlive this object and hold one pose or more; `up` is a unit vector, `chord` in m and positive.
-  DrivingFrame(const Trajectory& truth, const Eigen::Vector3d& up, const std::string& forward, double chord);
+  DrivingFrame(const geometry::Trajectory& truth, const Eigen::Vector3d& up, const std::string& forward, double chord);
 
   /// `T_world_cam` is the true pose at `t`, which is within the truth; `estimate` the estimated position in the truth's
   /// world frame. Calls go forward in time: headings are held from call to call.
-  DrivingError Split(TimeNs t, const SE3& T_world_cam, const Eigen::Vector3d& estimate);
+  DrivingError Split(TimeNs t, const geometry::SE3& T_world_cam, const Eigen::Vector3d& estimate);
 
  private:
   Eigen::Vector3d Flatten(const Eigen::Vector3d& v) const { return v - v.dot(up_) * up_; }
   std::vector<Eigen::Vector3d> FlatPositions() const;
   Eigen::Vector3d Chord(TimeNs t, const Eigen::Vector3d& center) const;
 
-  const Trajectory& truth_;
+  const geometry::Trajectory& truth_;
   Eigen::Vector3d up_;
   bool along_body_;
   double half_chord_;
@@ -55,4 +55,4 @@ class DrivingFrame {
   Eigen::Vector3d heading_;  // unit vector in the ground plane
 };
 
-}  // namespace evo
+}  // namespace evo::evaluation

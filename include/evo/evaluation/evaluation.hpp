@@ -18,7 +18,7 @@
 #include "evo/evaluation/statistics.hpp"
 #include "evo/geometry/trajectory.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 
 struct EvaluationOptions {
   AssociationOptions association;
@@ -66,7 +66,7 @@ struct ErrorSummary {
 struct AlignedEvaluation {
   Alignment alignment;
   Similarity similarity;
-  Trajectory aligned;  ///< every estimated pose of the interval, in the truth's world frame and clock
+  geometry::Trajectory aligned;  ///< every estimated pose of the interval, in the truth's world frame and clock
   std::vector<PoseError> errors;
   ErrorSummary longitudinal, lateral, vertical, planar;
   std::vector<RelationStatistics> ape;  ///< absolute pose errors, kAbsoluteRelations
@@ -80,12 +80,12 @@ struct Evaluation {
   bool has_stamps = true;  ///< else stamps are the numbers of the poses, in s
   TimeNs from = 0;         ///< the interval judged
   TimeNs to = 0;
-  Trajectory truth;        ///< the truth within it and the poses next to it, projected if so wanted
-  Eigen::Vector3d up;      ///< unit vector along an axis of the truth's world frame
-  double path_m = 0.0;     ///< length of the truth from the first pair to the last
-  double coverage = 0.0;   ///< share of the interval outside gaps, in [0, 1]; 1 without stamps
-  TimeNs longest_gap = 0;  ///< a stretch of the interval without a pose that is longer is a gap
-  std::int64_t gaps = 0;   ///< their number, those at the start and the end of the interval included
+  geometry::Trajectory truth;  ///< the truth within it and the poses next to it, projected if so wanted
+  Eigen::Vector3d up;          ///< unit vector along an axis of the truth's world frame
+  double path_m = 0.0;         ///< length of the truth from the first pair to the last
+  double coverage = 0.0;       ///< share of the interval outside gaps, in [0, 1]; 1 without stamps
+  TimeNs longest_gap = 0;      ///< a stretch of the interval without a pose that is longer is a gap
+  std::int64_t gaps = 0;       ///< their number, those at the start and the end of the interval included
   std::vector<AlignedEvaluation> alignments;
   std::optional<Consistency> consistency;  ///< of the estimate with its covariances, where those are given
   /// Why, of each alignment that the poses do not determine, and of covariances that fit no pose.
@@ -95,8 +95,8 @@ struct Evaluation {
 /// Judges `estimate` by `truth`, and its covariances, if there are any, by its errors: with its scale fitted if the
 /// first alignment fits one. Throws Error: kNothingToDo where they do not overlap in time, kDegenerateAlignment as
 /// Align does, kUsage where seconds are asked of files without stamps.
-Evaluation Evaluate(const Trajectory& truth, const Trajectory& estimate, std::span<const Alignment> alignments,
-                    const EvaluationInterval& interval, const EvaluationOptions& options,
-                    std::span<const StampedCovariance> covariances = {});
+Evaluation Evaluate(const geometry::Trajectory& truth, const geometry::Trajectory& estimate,
+                    std::span<const Alignment> alignments, const EvaluationInterval& interval,
+                    const EvaluationOptions& options, std::span<const geometry::StampedCovariance> covariances = {});
 
-}  // namespace evo
+}  // namespace evo::evaluation

@@ -6,7 +6,7 @@
 #include "evo/evaluation/matched_path.hpp"
 #include "evo/evaluation/statistics.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 
 /// Errors over all segments of one length.
 struct KittiLength {
@@ -32,4 +32,4 @@ struct KittiSegments {
 /// path; they are not blind to scale, so `path` is to be aligned with scale where a single camera made it.
 KittiSegments ComputeKittiSegments(const MatchedPath& path, std::span<const double> lengths_m, int step);
 
-}  // namespace evo
+}  // namespace evo::evaluation

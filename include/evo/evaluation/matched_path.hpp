@@ -11,7 +11,7 @@
 #include "evo/evaluation/alignment.hpp"
 #include "evo/evaluation/association.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 
 /// Matched poses laid over the truth, prepared for errors of motion between any two of them. All columns have one entry
 /// a pose; lengths in m, coordinates in the truth's world frame.
@@ -45,4 +45,4 @@ double Angle(const Eigen::Quaterniond& rotation);
 /// not positive and for an empty list.
 std::vector<double> ParseLengths(const std::string& text, double path_m);
 
-}  // namespace evo
+}  // namespace evo::evaluation

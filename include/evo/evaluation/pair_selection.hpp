@@ -7,7 +7,7 @@
 
 #include "evo/geometry/trajectory.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 
 enum class DeltaUnit { kFrames, kMetres, kDegrees, kRadians, kSeconds };
 
@@ -51,7 +51,7 @@ struct IndexPair {
 /// so there.
 ///
 /// All but angles of "all" take O(n log n).
-std::vector<IndexPair> SelectPairs(std::span<const StampedPose> poses, const Delta& delta, const std::string& selection,
-                                   double tolerance);
+std::vector<IndexPair> SelectPairs(std::span<const geometry::StampedPose> poses, const Delta& delta,
+                                   const std::string& selection, double tolerance);
 
-}  // namespace evo
+}  // namespace evo::evaluation

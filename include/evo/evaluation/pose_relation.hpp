@@ -7,7 +7,7 @@
 #include "evo/evaluation/association.hpp"
 #include "evo/evaluation/statistics.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 
 /// What of the difference between two poses (or two motions) is measured, as evo names it.
 enum class PoseRelation {
@@ -55,4 +55,4 @@ PoseDifferences AbsoluteDifferences(std::span<const PosePair> pairs);
 
 std::vector<RelationStatistics> Summarize(const PoseDifferences& differences, std::span<const PoseRelation> relations);
 
-}  // namespace evo
+}  // namespace evo::evaluation

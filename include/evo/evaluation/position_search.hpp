@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-namespace evo {
+namespace evo::evaluation {
 
 /// Finds, among positions in order of time, the next one that is far away. Boxes and spheres around runs of positions
 /// let a long stay in one place be passed over in O(log n) where a walk would take O(n) from each of its poses.
@@ -35,4 +35,4 @@ class PositionSearch {
   std::vector<std::vector<Run>> levels_;
 };
 
-}  // namespace evo
+}  // namespace evo::evaluation

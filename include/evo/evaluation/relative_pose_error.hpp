@@ -8,7 +8,7 @@
 #include "evo/evaluation/pair_selection.hpp"
 #include "evo/evaluation/pose_relation.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 
 struct RelativePoseErrorOptions {
   std::string deltas = "1f,1s,10m";     ///< see ParseDeltas
@@ -30,7 +30,8 @@ struct RelativePoseError {
 /// `estimate` every aligned estimated pose, with or without a true one: "closest" looks for pairs there, as TUM's tool
 /// does, and leaves out those without truth; as there, the motion is taken backwards, from the later pose to the
 /// earlier, which changes its translation. Without stamps a delta in seconds has no pairs.
-std::vector<RelativePoseError> ComputeRelativePoseErrors(std::span<const PosePair> pairs, const Trajectory& estimate,
-                                                         bool has_stamps, const RelativePoseErrorOptions& options);
+std::vector<RelativePoseError> ComputeRelativePoseErrors(std::span<const PosePair> pairs,
+                                                         const geometry::Trajectory& estimate, bool has_stamps,
+                                                         const RelativePoseErrorOptions& options);
 
-}  // namespace evo
+}  // namespace evo::evaluation

@@ -5,7 +5,7 @@
 #include "evo/core/time.hpp"
 #include "evo/evaluation/matched_path.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 
 struct LocalScaleOptions {
   double stretch_m = 10.0;  ///< path that a local scale is taken from, at most a fifth of the whole
@@ -31,4 +31,4 @@ struct ScaleSample {
 std::vector<ScaleSample> ComputeLocalScale(const MatchedPath& path, TimeNs from, TimeNs longest_gap,
                                            const LocalScaleOptions& options);
 
-}  // namespace evo
+}  // namespace evo::evaluation

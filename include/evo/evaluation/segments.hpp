@@ -11,7 +11,7 @@
 #include "evo/evaluation/scale_drift.hpp"
 #include "evo/evaluation/sub_trajectories.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 
 struct SegmentOptions {
   std::string kitti_lengths_m = "100,200,300,400,500,600,700,800";  ///< see ParseLengths
@@ -34,4 +34,4 @@ struct SegmentEvaluation {
 SegmentEvaluation EvaluateSegments(const MatchedPath& path, const Eigen::Vector3d& up, TimeNs from, TimeNs longest_gap,
                                    const SegmentOptions& options);
 
-}  // namespace evo
+}  // namespace evo::evaluation

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-namespace evo {
+namespace evo::evaluation {
 
 /// What evo prints for a list of errors; NaN where the list is empty.
 struct Statistics {
@@ -19,4 +19,4 @@ struct Statistics {
 
 Statistics ComputeStatistics(std::span<const double> errors);
 
-}  // namespace evo
+}  // namespace evo::evaluation

@@ -7,7 +7,7 @@
 #include "evo/evaluation/matched_path.hpp"
 #include "evo/evaluation/statistics.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 
 /// Errors at the ends of all sub-trajectories of one length.
 struct SubTrajectoryErrors {
@@ -36,4 +36,4 @@ struct SubTrajectoryErrors {
 std::vector<SubTrajectoryErrors> ComputeSubTrajectoryErrors(const MatchedPath& path, std::span<const double> lengths_m,
                                                             const Eigen::Vector3d& up);
 
-}  // namespace evo
+}  // namespace evo::evaluation

@@ -9,7 +9,7 @@
 #include "evo/evaluation/statistics.hpp"
 #include "evo/evaluation/track_truth.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 
 // Feature age and track error as defined by
 //   [1] D. Gehrig, H. Rebecq, G. Gallego, D. Scaramuzza: EKLT, IJCV 2019, and its rpg_feature_tracking_analysis;
@@ -92,4 +92,4 @@ std::int64_t Count(const TrackAccuracy& accuracy, TrackVerdict verdict);
 TrackAccuracy EvaluateTracks(const std::vector<FeatureTrack>& tracks, const std::vector<TrueTrack>& truth,
                              const std::string& source, std::vector<double> thresholds_px);
 
-}  // namespace evo
+}  // namespace evo::evaluation

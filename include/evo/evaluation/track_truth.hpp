@@ -7,21 +7,21 @@
 
 #include "evo/core/parameters.hpp"
 #include "evo/core/time.hpp"
+#include "evo/events/tracks.hpp"
 #include "evo/geometry/camera.hpp"
 #include "evo/geometry/trajectory.hpp"
-#include "evo/io/depth_maps.hpp"
-#include "evo/io/tracks.hpp"
+#include "evo/io/depth_map_reader.hpp"
 
-namespace evo {
+namespace evo::evaluation {
 
 /// The observations of one feature, in order of time.
 struct FeatureTrack {
   std::int64_t id = 0;
-  std::vector<TrackObservation> observations;
+  std::vector<events::TrackObservation> observations;
 };
 
 /// In order of id.
-std::vector<FeatureTrack> GroupById(const Tracks& tracks);
+std::vector<FeatureTrack> GroupById(const events::Tracks& tracks);
 
 /// Whether a track can be compared with the truth, or why not.
 enum class TrackVerdict {
@@ -60,7 +60,8 @@ void Register(Parameters& parameters, TrackTruthOptions& options);
 
 /// A file of true tracks with the ids of the estimate, as rpg_feature_tracking_analysis makes them. It interpolates the
 /// estimate at the stamps of the truth; here the truth is interpolated, linearly, at the stamps of the estimate.
-std::vector<TrueTrack> TruthFromTracks(const std::vector<FeatureTrack>& tracks, const Tracks& truth, TimeNs max_gap);
+std::vector<TrueTrack> TruthFromTracks(const std::vector<FeatureTrack>& tracks, const events::Tracks& truth,
+                                       TimeNs max_gap);
 
 /// Poses and depth maps: the point is where the ray of the first observation meets the surface in the depth map
 /// nearest in time, and is projected into the camera at each later stamp. It is visible until it leaves the image or
@@ -68,14 +69,15 @@ std::vector<TrueTrack> TruthFromTracks(const std::vector<FeatureTrack>& tracks, 
 /// rpg_feature_tracking_analysis, there without lens distortion and occlusion.) Where the map tells what moves, tracks
 /// that begin within `surface_reach_px` of such things are not judged.
 /// Throws Error (kInput) where the maps have not the size of the sensor.
-std::vector<TrueTrack> TruthFromDepth(const std::vector<FeatureTrack>& tracks, const Trajectory& trajectory,
-                                      const Camera& camera, const DepthMapReader& maps, TimeNs max_gap,
+std::vector<TrueTrack> TruthFromDepth(const std::vector<FeatureTrack>& tracks, const geometry::Trajectory& trajectory,
+                                      const geometry::Camera& camera, const io::DepthMapReader& maps, TimeNs max_gap,
                                       const TrackTruthOptions& options);
 
 /// Poses alone: the point is triangulated from all observations of the track by least squares and projected back. What
 /// is left is a lower bound of the error: the point follows a track that drifts, and drift along the epipolar lines
 /// becomes depth. How long the point is visible stays unknown.
-std::vector<TrueTrack> TruthFromTriangulation(const std::vector<FeatureTrack>& tracks, const Trajectory& trajectory,
-                                              const Camera& camera, TimeNs max_gap);
+std::vector<TrueTrack> TruthFromTriangulation(const std::vector<FeatureTrack>& tracks,
+                                              const geometry::Trajectory& trajectory, const geometry::Camera& camera,
+                                              TimeNs max_gap);
 
-}  // namespace evo
+}  // namespace evo::evaluation

@@ -6,7 +6,7 @@
 
 #include "evo/core/time.hpp"
 
-namespace evo {
+namespace evo::events {
 
 /// Events as columns of equal length, in order of time (ties allowed).
 struct EventColumns {
@@ -23,4 +23,4 @@ struct EventColumns {
   void push_back(TimeNs time, std::uint16_t column, std::uint16_t row, std::int8_t sign);
 };
 
-}  // namespace evo
+}  // namespace evo::events

@@ -11,7 +11,7 @@
 #include "evo/core/time.hpp"
 #include "evo/events/event_columns.hpp"
 
-namespace evo {
+namespace evo::events {
 
 /// The events around a moving point, relative to that point and to a reference instant: column i belongs to event i.
 struct LocalEvents {
@@ -129,4 +129,4 @@ class EventHistory {
   TimeNs oldest_ = std::numeric_limits<TimeNs>::min();  // events before this are forgotten
 };
 
-}  // namespace evo
+}  // namespace evo::events

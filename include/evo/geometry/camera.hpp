@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace evo {
+namespace evo::geometry {
 
 enum class Distortion { kRadTan, kEquidistant };
 
@@ -49,4 +49,4 @@ class Camera {
   Calibration calibration_;
 };
 
-}  // namespace evo
+}  // namespace evo::geometry

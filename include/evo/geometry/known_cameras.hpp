@@ -2,7 +2,7 @@
 
 #include "evo/geometry/camera.hpp"
 
-namespace evo {
+namespace evo::geometry {
 
 /// Left DAVIS346 of MVSEC's outdoor_day, as published there.
 inline Calibration MvsecDavis346() {
@@ -28,4 +28,4 @@ inline Calibration UzhDavis240c() {
           {-0.368436311798, 0.150947243557, -0.000296130534385, -0.000759431726241, 0.0}};
 }
 
-}  // namespace evo
+}  // namespace evo::geometry

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-namespace evo {
+namespace evo::geometry {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
@@ -50,4 +50,4 @@ class SE3 {
 /// The motion from `a` to `b` at fraction `s` in [0, 1]: great-circle rotation, straight translation.
 SE3 Interpolate(const SE3& a, const SE3& b, double s);
 
-}  // namespace evo
+}  // namespace evo::geometry

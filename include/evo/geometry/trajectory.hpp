@@ -6,7 +6,7 @@
 #include "evo/core/time.hpp"
 #include "evo/geometry/se3.hpp"
 
-namespace evo {
+namespace evo::geometry {
 
 struct StampedPose {
   TimeNs t = 0;
@@ -30,4 +30,4 @@ std::optional<SE3> PoseAt(const Trajectory& trajectory, TimeNs t, TimeNs max_int
 /// From position to position, m; 0 for one pose or none.
 double PathLength(const Trajectory& trajectory);
 
-}  // namespace evo
+}  // namespace evo::geometry

@@ -6,7 +6,7 @@
 
 #include "evo/geometry/se3.hpp"
 
-namespace evo {
+namespace evo::geometry {
 
 /// The depths (z coordinates) of one point in two views, from Z2 x2 = Z1 R x1 + t (the paper's equation 6) in the
 /// least-squares sense. Homogeneous x = (u, v, 1) on the plane z = 1; `T_2_1` takes coordinates in camera 1 to camera
@@ -33,4 +33,4 @@ struct TriangulatedPoint {
 /// Empty where the rays do not fix the point or it ends behind one of the cameras.
 std::optional<TriangulatedPoint> TriangulateViews(std::span<const View> views);
 
-}  // namespace evo
+}  // namespace evo::geometry

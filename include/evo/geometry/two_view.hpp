@@ -9,7 +9,7 @@
 
 #include "evo/geometry/se3.hpp"
 
-namespace evo {
+namespace evo::geometry {
 
 /// One point seen by two cameras, undistorted, on their planes z = 1.
 struct Correspondence {
@@ -51,4 +51,4 @@ struct RelativePose {
 std::optional<RelativePose> EstimateRelativePose(std::span<const Correspondence> pairs,
                                                  const RelativePoseOptions& options);
 
-}  // namespace evo
+}  // namespace evo::geometry

@@ -5,7 +5,7 @@
 
 #include "evo/geometry/camera.hpp"
 
-namespace evo {
+namespace evo::io {
 
 struct ImageSize {
   int width = 0;   ///< px
@@ -17,14 +17,14 @@ struct ImageSize {
 /// does, or it is the 240 x 180 px of the DAVIS240C that recorded the UZH sequences. A camchain's own resolution
 /// counts; a differing `size` is refused. Throws Error (kInput) with line and key on what is missing, not finite,
 /// unsupported or impossible.
-Calibration ReadCalibration(const std::filesystem::path& path, std::optional<ImageSize> size = std::nullopt);
+geometry::Calibration ReadCalibration(const std::filesystem::path& path, std::optional<ImageSize> size = std::nullopt);
 
 /// Writes a camchain YAML with `cam0` alone, or a calib.txt, that ReadCalibration reads back exactly. A lone camera
 /// needs no turning to be rectified: the camchain's rectification is the identity, its projection the intrinsics, as in
 /// Rectified(). Throws Error:
 /// kConfiguration for what the format has no place for (a fifth coefficient in a camchain, equidistant distortion in a
 /// calib.txt), kOutput.
-void WriteCamchain(const std::filesystem::path& path, const Calibration& calibration);
-void WriteUzhCalibration(const std::filesystem::path& path, const Calibration& calibration);
+void WriteCamchain(const std::filesystem::path& path, const geometry::Calibration& calibration);
+void WriteUzhCalibration(const std::filesystem::path& path, const geometry::Calibration& calibration);
 
-}  // namespace evo
+}  // namespace evo::io

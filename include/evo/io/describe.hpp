@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace evo {
+namespace evo::io {
 
 /// What a file holds, for `evo-run info`.
 struct Description {
@@ -18,4 +18,4 @@ struct Description {
 /// the polarity from samples (and the value says so). Throws Error (kInput) on a corrupt file or one of another kind.
 Description Describe(const std::filesystem::path& path);
 
-}  // namespace evo
+}  // namespace evo::io

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <initializer_list>
 
-namespace evo {
+namespace evo::io {
 
 /// What a file is, told by its first bytes and lines, never by its name.
 enum class FileKind {
@@ -31,4 +31,4 @@ FileKind DetectKind(const std::filesystem::path& path);
 /// instead. Text of no known kind passes: the reader of it names the line that is wrong.
 void RequireKind(const std::filesystem::path& path, std::initializer_list<FileKind> accepted, const char* expected);
 
-}  // namespace evo
+}  // namespace evo::io

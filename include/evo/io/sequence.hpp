@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <optional>
 
-namespace evo {
+namespace evo::io {
 
 /// The files of one recording.
 struct SequenceFiles {
@@ -17,4 +17,4 @@ struct SequenceFiles {
 /// camchain*.yaml. Throws Error (kInput) if there is no such file or the folder holds no, or more than one, recording.
 SequenceFiles FindSequence(const std::filesystem::path& path);
 
-}  // namespace evo
+}  // namespace evo::io

@@ -5,7 +5,7 @@
 #include "evo/core/output_file.hpp"
 #include "evo/events/event_columns.hpp"
 
-namespace evo {
+namespace evo::io {
 
 /// Writes a UZH events.txt, lines `t x y p`: seconds with six decimals (stamps must be whole microseconds, at 0 or
 /// later), p 1 or 0. The file appears whole on Commit() or not at all. Throws Error (kOutput).
@@ -14,11 +14,11 @@ class UzhEventWriter {
   explicit UzhEventWriter(const std::filesystem::path& path) : file_(path) {}
 
   /// Events in order of time, after those appended before.
-  void Append(const EventColumns& events);
+  void Append(const events::EventColumns& events);
   void Commit() { file_.Commit(); }
 
  private:
   OutputFile file_;
 };
 
-}  // namespace evo
+}  // namespace evo::io

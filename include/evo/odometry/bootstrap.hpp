@@ -9,7 +9,7 @@
 #include "evo/odometry/frame.hpp"
 #include "evo/odometry/point.hpp"
 
-namespace evo {
+namespace evo::odometry {
 
 struct BootstrapOptions {
   double min_disparity_px = 10.0;  ///< median image motion of a pair worth trying
@@ -28,7 +28,7 @@ void Register(Parameters& parameters, BootstrapOptions& options);
 struct Bootstrap {
   int first = 0;  ///< index of the frame
   int last = 0;
-  std::vector<SE3> T_cam_world;  ///< of the frames first ... last
+  std::vector<geometry::SE3> T_cam_world;  ///< of the frames first ... last
   std::vector<Point> points;
 };
 
@@ -49,8 +49,8 @@ class Bootstrapper {
 
  private:
   std::optional<Bootstrap> Try(int first, int last);
-  std::optional<Bootstrap> FromMotion(int first, int last, const std::vector<FeaturePair>& pairs, const SE3& T_2_1,
-                                      const std::vector<bool>& inliers);
+  std::optional<Bootstrap> FromMotion(int first, int last, const std::vector<FeaturePair>& pairs,
+                                      const geometry::SE3& T_2_1, const std::vector<bool>& inliers);
   bool TrackBetween(Bootstrap* bootstrap) const;
   bool Refine(Bootstrap* bootstrap) const;
   /// Of the points' `parallaxes`, rad; refuses if not.
@@ -65,4 +65,4 @@ class Bootstrapper {
   std::string obstacle_;
 };
 
-}  // namespace evo
+}  // namespace evo::odometry

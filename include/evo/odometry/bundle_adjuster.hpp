@@ -7,7 +7,7 @@
 #include "evo/geometry/se3.hpp"
 #include "evo/odometry/motion_prior.hpp"
 
-namespace evo {
+namespace evo::odometry {
 
 /// A point as (alpha, beta, rho) in the camera of its anchor frame: X_anchor = (alpha, beta, 1) / rho.
 /// Inverse depth makes far points as harmless as near ones; rho = 0 is a point at infinity.
@@ -25,9 +25,9 @@ struct BundleObservation {
 };
 
 struct BundleProblem {
-  std::vector<SE3> T_cam_world;  ///< in order of time
-  int fixed_frames = 1;          ///< the first so many poses stay: 1 leaves the scale free, 2 holds it
-  int scale_frame = -1;          ///< a frame whose distance from the first is held, to hold the scale; -1: none
+  std::vector<geometry::SE3> T_cam_world;  ///< in order of time
+  int fixed_frames = 1;                    ///< the first so many poses stay: 1 leaves the scale free, 2 holds it
+  int scale_frame = -1;  ///< a frame whose distance from the first is held, to hold the scale; -1: none
   MotionPrior motion;
   std::vector<BundlePoint> points;
   std::vector<BundleObservation> observations;  ///< in order of points, then of frames
@@ -53,8 +53,8 @@ struct BundleJacobian {
   Eigen::Matrix<double, 2, 6> by_pose = Eigen::Matrix<double, 2, 6>::Zero();
   Eigen::Matrix<double, 2, 3> by_point = Eigen::Matrix<double, 2, 3>::Zero();
 };
-bool Linearize(const SE3& T_cam_anchor, const Eigen::Vector3d& inverse_depth, const BundleObservation& observation,
-               BundleJacobian* jacobian);
+bool Linearize(const geometry::SE3& T_cam_anchor, const Eigen::Vector3d& inverse_depth,
+               const BundleObservation& observation, BundleJacobian* jacobian);
 
 /// Refines poses and points together: Levenberg-Marquardt on Cauchy's loss of the innovations of the reprojection
 /// errors and of the changes of velocity, the points eliminated by Schur's complement, the poses solved by a skyline
@@ -78,4 +78,4 @@ std::vector<Eigen::Vector2d> BundleDrifts(const BundleProblem& problem, double d
 /// the reduced system.
 std::vector<int> BundleSkyline(const BundleProblem& problem);
 
-}  // namespace evo
+}  // namespace evo::odometry

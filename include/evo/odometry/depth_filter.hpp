@@ -9,7 +9,7 @@
 #include "evo/geometry/se3.hpp"
 #include "evo/odometry/frame.hpp"
 
-namespace evo {
+namespace evo::odometry {
 
 /// What is believed about the inverse distance of one feature along its unit ray from the key frame that first saw it:
 /// a Gaussian times a Beta distribution of the share of good measurements (equation 8; Vogiatzis and Hernandez, 2011).
@@ -56,7 +56,7 @@ class DepthFilter {
 
   /// Measures every seed whose track the frame sees. `T_cam_key(key_frame)` gives the frame's camera relative to a
   /// seed's reference.
-  void Update(const Frame& frame, const std::function<SE3(int)>& T_cam_key);
+  void Update(const Frame& frame, const std::function<geometry::SE3(int)>& T_cam_key);
 
   /// Forgets seeds whose reference is older than max_age key frames before `key_frame`.
   void DropOld(int key_frame);
@@ -69,7 +69,7 @@ class DepthFilter {
 
  private:
   enum class Verdict { kKeep, kConverged, kDrop };
-  Verdict Measure(const Feature& feature, const SE3& T_cam_key, Seed* seed) const;
+  Verdict Measure(const Feature& feature, const geometry::SE3& T_cam_key, Seed* seed) const;
 
   DepthFilterOptions options_;
   double px_angle_;
@@ -77,4 +77,4 @@ class DepthFilter {
   std::vector<Seed> seeds_;
 };
 
-}  // namespace evo
+}  // namespace evo::odometry

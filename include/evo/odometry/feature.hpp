@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-namespace evo {
+namespace evo::odometry {
 
 /// One observation of a track in a frame.
 struct Feature {
@@ -14,4 +14,4 @@ struct Feature {
   Eigen::Matrix2d px_per_unit = Eigen::Matrix2d::Identity();
 };
 
-}  // namespace evo
+}  // namespace evo::odometry

@@ -9,7 +9,7 @@
 #include "evo/odometry/point.hpp"
 #include "evo/odometry/pose_uncertainty.hpp"
 
-namespace evo {
+namespace evo::odometry {
 
 struct FinalRefinementOptions {
   bool enabled = true;
@@ -29,19 +29,19 @@ void Register(Parameters& parameters, FinalRefinementOptions& options);
 
 /// A stretch of frames that were tracked in one map, and what is known of them.
 struct Segment {
-  std::vector<int> frames;       ///< indices, in order of time
-  std::vector<SE3> T_cam_world;  ///< of these frames
-  std::vector<int> inliers;      ///< of these frames
-  std::vector<Point> points;     ///< of the map
+  std::vector<int> frames;                 ///< indices, in order of time
+  std::vector<geometry::SE3> T_cam_world;  ///< of these frames
+  std::vector<int> inliers;                ///< of these frames
+  std::vector<Point> points;               ///< of the map
 
   // How far the poses may be off; empty before RefineSegment.
   PoseUncertainty uncertainty;        ///< of those that were adjusted together
   std::vector<std::size_t> adjusted;  ///< which of these frames those are
   /// Of every pose, besides the uncertainty of the last adjusted one before it, or of the first: of left twists.
-  std::vector<Matrix6d> besides;
+  std::vector<geometry::Matrix6d> besides;
 
   /// Of the left twists of these poses, relative to the first adjusted one, see PoseUncertainty.
-  std::vector<Matrix6d> Covariances(bool scale_is_free) const;
+  std::vector<geometry::Matrix6d> Covariances(bool scale_is_free) const;
 };
 
 /// Bundle adjustment over the frames of one segment and all their tracks, then every frame's pose against the refined
@@ -50,4 +50,4 @@ struct Segment {
 void RefineSegment(const FinalRefinementOptions& options, const std::vector<Frame>& frames, int before, int after,
                    const std::function<void(double)>& progress, ThreadPool* pool, Segment* segment);
 
-}  // namespace evo
+}  // namespace evo::odometry

@@ -7,12 +7,12 @@
 #include "evo/geometry/se3.hpp"
 #include "evo/odometry/feature.hpp"
 
-namespace evo {
+namespace evo::odometry {
 
 /// All features seen at one instant and the pose of the camera then.
 struct Frame {
   TimeNs t = 0;
-  SE3 T_cam_world;                ///< meaningful once the frame has been tracked
+  geometry::SE3 T_cam_world;      ///< meaningful once the frame has been tracked
   std::vector<Feature> features;  ///< in order of their tracks' ids
 
   /// Null if the track is not seen in this frame.
@@ -31,4 +31,4 @@ std::vector<FeaturePair> Match(const Frame& first, const Frame& second);
 /// Median image motion of the shared tracks in raw pixels (first order); 0 if there are none.
 double MedianDisparity(const std::vector<FeaturePair>& pairs);
 
-}  // namespace evo
+}  // namespace evo::odometry

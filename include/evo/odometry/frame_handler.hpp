@@ -13,7 +13,7 @@
 #include "evo/odometry/mapping_thread.hpp"
 #include "evo/odometry/pose_optimizer.hpp"
 
-namespace evo {
+namespace evo::odometry {
 
 struct KeyFrameOptions {
   double translation = 0.1;       ///< since the last key frame, as a share of the median depth
@@ -37,7 +37,7 @@ void Register(Parameters& parameters, FrameHandlerOptions& options);
 struct FrameRecord {
   int segment = -1;    ///< of the map that it was tracked in; -1: it has no pose
   int reference = -1;  ///< key frame that the pose is relative to
-  SE3 T_cam_reference;
+  geometry::SE3 T_cam_reference;
   int inliers = 0;
 };
 
@@ -53,7 +53,7 @@ class FrameHandler {
 
   const std::vector<FrameRecord>& records() const { return records_; }
   /// T_cam_world of a frame that has a pose.
-  SE3 Pose(int index) const;
+  geometry::SE3 Pose(int index) const;
   const std::vector<int>& key_frames() const { return key_indices_; }
   const std::vector<int>& bootstraps() const { return bootstraps_; }
   const std::vector<int>& losses() const { return losses_; }
@@ -71,12 +71,12 @@ class FrameHandler {
   void Apply(int index);
   bool Track(int index);
   Sighted Sight(const Frame& frame) const;
-  SE3 Predict(TimeNs t) const;
+  geometry::SE3 Predict(TimeNs t) const;
   void Commit(int index, const Sighted& sighted, const PoseEstimate& estimate);
-  bool IsKeyFrame(int index, const SE3& T_cam_world, const Sighted& sighted) const;
+  bool IsKeyFrame(int index, const geometry::SE3& T_cam_world, const Sighted& sighted) const;
   void StartSegment(Bootstrap bootstrap);
   void PlaceSegment(Bootstrap* bootstrap) const;
-  void Remember(int index, const SE3& T_cam_world, bool key_frame, int inliers, FrameMessage* message);
+  void Remember(int index, const geometry::SE3& T_cam_world, bool key_frame, int inliers, FrameMessage* message);
 
   FrameHandlerOptions options_;
   const std::vector<Frame>& frames_;
@@ -84,7 +84,7 @@ class FrameHandler {
   Bootstrapper bootstrapper_;
   Mapper mapper_;
   std::unordered_map<std::int64_t, Eigen::Vector3d> landmarks_;  // the pose thread's view of the map, world
-  std::vector<SE3> key_poses_;                                   // T_cam_world
+  std::vector<geometry::SE3> key_poses_;                         // T_cam_world
   std::vector<int> key_indices_;                                 // of the frames
   std::vector<FrameRecord> records_;
   std::vector<int> bootstraps_;
@@ -95,4 +95,4 @@ class FrameHandler {
   MappingThread mapping_;  // last: its thread ends before what it works on
 };
 
-}  // namespace evo
+}  // namespace evo::odometry

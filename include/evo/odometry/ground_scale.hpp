@@ -7,7 +7,7 @@
 #include "evo/odometry/final_refinement.hpp"
 #include "evo/odometry/frame.hpp"
 
-namespace evo {
+namespace evo::odometry {
 
 struct GroundOptions {
   bool hold_height = true;       ///< above a road, even if it is not known
@@ -38,4 +38,4 @@ struct GroundScale {
 GroundScale ScaleByGround(const GroundOptions& options, const std::vector<Frame>& frames,
                           std::vector<Segment>* segments);
 
-}  // namespace evo
+}  // namespace evo::odometry

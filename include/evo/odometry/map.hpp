@@ -7,7 +7,7 @@
 #include "evo/odometry/frame.hpp"
 #include "evo/odometry/point.hpp"
 
-namespace evo {
+namespace evo::odometry {
 
 /// The points of the map by their track's id, and the key frames in order of time.
 struct Map {
@@ -25,4 +25,4 @@ struct SceneDepth {
 /// `depths` are positive; zeros if it is empty.
 SceneDepth MeasureSceneDepth(std::vector<double> depths);
 
-}  // namespace evo
+}  // namespace evo::odometry

@@ -10,7 +10,7 @@
 #include "evo/odometry/map.hpp"
 #include "evo/odometry/point.hpp"
 
-namespace evo {
+namespace evo::odometry {
 
 struct MapperOptions {
   bool window_refinement = true;  ///< bundle-adjust the last key frames at every key frame
@@ -29,7 +29,7 @@ struct FrameMessage {
   int index = 0;       ///< of the frame
   Frame frame;         ///< its own pose is not used
   int reference = -1;  ///< key frame that the pose is relative to; -1: the pose is in the world
-  SE3 T_cam_reference;
+  geometry::SE3 T_cam_reference;
   bool key_frame = false;    ///< becomes the next key frame, numbered from 0 without gaps
   bool new_segment = false;  ///< the map starts anew with `points`
   std::vector<Point> points;
@@ -42,7 +42,7 @@ struct MapUpdate {
   int index = 0;                                                 ///< of the frame
   std::vector<std::pair<std::int64_t, Eigen::Vector3d>> points;  ///< new or moved, world
   std::vector<std::int64_t> removed;                             ///< tracks
-  std::vector<std::pair<int, SE3>> key_frames;                   ///< new or moved: number, T_cam_world
+  std::vector<std::pair<int, geometry::SE3>> key_frames;         ///< new or moved: number, T_cam_world
 };
 
 /// The depth thread's work: owns the map, measures depths, adds converged points, drops points that frames contradict,
@@ -77,4 +77,4 @@ class Mapper {
   int segment_begin_ = 0;  // its first key frame
 };
 
-}  // namespace evo
+}  // namespace evo::odometry

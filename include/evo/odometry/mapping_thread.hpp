@@ -9,7 +9,7 @@
 
 #include "evo/odometry/mapper.hpp"
 
-namespace evo {
+namespace evo::odometry {
 
 /// Runs a mapper beside the pose thread: a queue of frames in, a queue of updates out, first in first out, nothing ever
 /// dropped. Everything crosses by value. What Collect() returns depends only on what was posted, never on timing.
@@ -42,4 +42,4 @@ class MappingThread {
   std::thread thread_;
 };
 
-}  // namespace evo
+}  // namespace evo::odometry

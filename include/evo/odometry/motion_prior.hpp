@@ -6,7 +6,7 @@
 
 #include "evo/geometry/se3.hpp"
 
-namespace evo {
+namespace evo::odometry {
 
 /// A camera does not jump: what its velocity changes by is white noise (the constant-velocity model). Matters only
 /// where tracks are so few that one bad one throws a pose aside.
@@ -20,16 +20,19 @@ struct MotionPrior {
 /// motion per s^1.5, and its derivatives by the left twists of the three poses, to second order in the angle between
 /// them.
 struct VelocityChange {
-  Vector6d value;
-  Matrix6d by_before, by_here, by_after;
+  geometry::Vector6d value;
+  geometry::Matrix6d by_before, by_here, by_after;
 };
 
 /// At pose `i`, which is neither the first nor the last; `t` in s.
-Vector6d MeasureVelocityChange(const std::vector<SE3>& poses, const std::vector<double>& t, std::size_t i);
-VelocityChange LinearizeVelocityChange(const std::vector<SE3>& poses, const std::vector<double>& t, std::size_t i);
+geometry::Vector6d MeasureVelocityChange(const std::vector<geometry::SE3>& poses, const std::vector<double>& t,
+                                         std::size_t i);
+VelocityChange LinearizeVelocityChange(const std::vector<geometry::SE3>& poses, const std::vector<double>& t,
+                                       std::size_t i);
 
 /// With the costs of a prior that expects velocity to change `times` as much as is usual among `poses`, whose sightings
 /// have the noise `sigma_px`.
-MotionPrior MeasureMotion(const std::vector<SE3>& poses, std::vector<double> t, double times, double sigma_px);
+MotionPrior MeasureMotion(const std::vector<geometry::SE3>& poses, std::vector<double> t, double times,
+                          double sigma_px);
 
-}  // namespace evo
+}  // namespace evo::odometry

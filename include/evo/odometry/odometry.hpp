@@ -7,16 +7,16 @@
 
 #include "evo/core/parameters.hpp"
 #include "evo/core/time.hpp"
+#include "evo/events/tracks.hpp"
 #include "evo/geometry/camera.hpp"
 #include "evo/geometry/trajectory.hpp"
-#include "evo/io/tracks.hpp"
 #include "evo/odometry/final_refinement.hpp"
 #include "evo/odometry/frame_handler.hpp"
 #include "evo/odometry/ground_scale.hpp"
 #include "evo/odometry/point.hpp"
 #include "evo/odometry/resampling.hpp"
 
-namespace evo {
+namespace evo::odometry {
 
 struct OdometryOptions {
   ResamplingOptions resampling;
@@ -27,11 +27,11 @@ struct OdometryOptions {
 void Register(Parameters& parameters, OdometryOptions& options);
 
 struct OdometryResult {
-  Trajectory trajectory;     ///< a pose for every frame that could be estimated, and for no other
-  std::vector<int> inliers;  ///< points that agreed with each of them
+  geometry::Trajectory trajectory;  ///< a pose for every frame that could be estimated, and for no other
+  std::vector<int> inliers;         ///< points that agreed with each of them
   /// Of each of them, if there was a final refinement, relative to the first certain pose of its segment and, if the
   /// scale is arbitrary, to the scale that fits the segment best. In units of the trajectory, and rad.
-  std::vector<StampedCovariance> covariances;
+  std::vector<geometry::StampedCovariance> covariances;
   std::vector<Point> points;  ///< the map, world
   bool resampled = false;     ///< the tracks were asynchronous
   int frames = 0;             ///< with and without a pose
@@ -51,7 +51,7 @@ using OdometryProgress = std::function<void(OdometryStage stage, double done)>;
 /// whole run. The scale is arbitrary unless the camera's height above the road is given. The result does not depend on
 /// `threads` (2 or more: the depths get their own thread). Throws Error: kInput if tracks and camera do not belong
 /// together, kTrackingLost if no map could ever be started.
-OdometryResult RunOdometry(const Tracks& tracks, const Camera& camera, const OdometryOptions& options, int threads,
-                           const OdometryProgress& progress);
+OdometryResult RunOdometry(const events::Tracks& tracks, const geometry::Camera& camera, const OdometryOptions& options,
+                           int threads, const OdometryProgress& progress);
 
-}  // namespace evo
+}  // namespace evo::odometry

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-namespace evo {
+namespace evo::odometry {
 
 /// A point of the map: what one track has converged to, and how well its frames agreed with it.
 struct Point {
@@ -13,4 +13,4 @@ struct Point {
   int outliers = 0;                                    ///< frames that contradicted it
 };
 
-}  // namespace evo
+}  // namespace evo::odometry

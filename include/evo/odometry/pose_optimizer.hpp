@@ -7,7 +7,7 @@
 #include "evo/core/parameters.hpp"
 #include "evo/geometry/se3.hpp"
 
-namespace evo {
+namespace evo::odometry {
 
 struct PoseOptions {
   int iterations = 10;
@@ -25,20 +25,20 @@ struct PoseObservation {
 };
 
 struct PoseEstimate {
-  SE3 T_cam_world;
+  geometry::SE3 T_cam_world;
   std::vector<bool> inliers;
   int inlier_count = 0;
   double scale_px = 0.0;  ///< robust standard deviation of a residual's coordinate
   double cost = 0.0;      ///< sum of the weighted squared residuals, px^2
   /// Of the left twist (translation, rotation); zero if the pose is not determined.
-  Matrix6d covariance = Matrix6d::Zero();
+  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
 };
 
 /// e(xi) = u - (1/Z) K exp(xi^) P (equation 1) in raw pixels, to first order about the observation. Infinite behind the
 /// camera.
-Eigen::Vector2d ReprojectionError(const SE3& T_cam_world, const PoseObservation& observation);
+Eigen::Vector2d ReprojectionError(const geometry::SE3& T_cam_world, const PoseObservation& observation);
 /// de / d delta for T <- Exp(delta) T (equation 2).
-Eigen::Matrix<double, 2, 6> ReprojectionJacobian(const SE3& T_cam_world, const PoseObservation& observation);
+Eigen::Matrix<double, 2, 6> ReprojectionJacobian(const geometry::SE3& T_cam_world, const PoseObservation& observation);
 
 /// The pose of one frame against known points: Gauss-Newton on the weighted normal equations (equations 3-5).
 /// The weights w_i are Tukey's, with the scale taken from the residuals' median; the first iterations use Huber's,
@@ -48,7 +48,7 @@ class PoseOptimizer {
   explicit PoseOptimizer(const PoseOptions& options) : options_(options) {}
 
   /// `start` is T_cam_world. With fewer than three points the start comes back without inliers.
-  PoseEstimate Optimize(std::span<const PoseObservation> observations, const SE3& start) const;
+  PoseEstimate Optimize(std::span<const PoseObservation> observations, const geometry::SE3& start) const;
 
   /// Whether there are inliers enough to believe the pose.
   bool Accepts(const PoseEstimate& estimate) const { return Accepts(estimate, options_.min_inlier_ratio); }
@@ -58,4 +58,4 @@ class PoseOptimizer {
   PoseOptions options_;
 };
 
-}  // namespace evo
+}  // namespace evo::odometry

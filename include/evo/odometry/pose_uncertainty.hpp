@@ -9,7 +9,7 @@
 #include "evo/geometry/se3.hpp"
 #include "evo/odometry/bundle_adjuster.hpp"
 
-namespace evo {
+namespace evo::odometry {
 
 /// What the errors of tracks have in common. The residuals of an adjustment do not show it, since the poses have taken
 /// it up: it is a property of tracker and sensor, to be measured where the truth is known.
@@ -42,12 +42,12 @@ class PoseUncertainty {
 
   /// From elsewhere the scale along the path is known to the relative standard deviation `error`, whose correlation
   /// falls to 1 / e over a way of `reach`. `T_cam_world` are the poses with that scale, of the same rotations.
-  void HoldScale(const std::vector<SE3>& T_cam_world, double error, double reach);
+  void HoldScale(const std::vector<geometry::SE3>& T_cam_world, double error, double reach);
 
   /// Of the left twists (translation, rotation) of all poses relative to `origin`, which itself has none. The scale is
   /// the problem's, or, if `scale_is_free`, the one that fits the true path best by least squares with the origin held,
   /// as where the path is aligned with it so.
-  std::vector<Matrix6d> Covariances(std::size_t origin, bool scale_is_free) const;
+  std::vector<geometry::Matrix6d> Covariances(std::size_t origin, bool scale_is_free) const;
   /// Standard deviation of the camera's turn from one pose to another, rad.
   double Turn(std::size_t from, std::size_t to) const;
 
@@ -60,8 +60,8 @@ class PoseUncertainty {
 
   bool known_ = false;
   std::pair<std::size_t, std::size_t> certain_;
-  std::vector<SE3> poses_;
+  std::vector<geometry::SE3> poses_;
   Eigen::MatrixXd samples_;  // of the left twists' errors, six rows for every pose
 };
 
-}  // namespace evo
+}  // namespace evo::odometry

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace evo {
+namespace evo::report {
 
 /// A table of text with a header.
 struct CsvTable {
@@ -26,4 +26,4 @@ CsvTable ReadCsv(const std::filesystem::path& path);
 /// Writes it, quoted where it must be, whole or not at all. Throws Error (kOutput).
 void WriteCsv(const std::filesystem::path& path, const CsvTable& table);
 
-}  // namespace evo
+}  // namespace evo::report

@@ -8,9 +8,9 @@
 
 #include "evo/core/time.hpp"
 #include "evo/events/event_columns.hpp"
-#include "evo/io/tracks.hpp"
+#include "evo/events/tracks.hpp"
 
-namespace evo {
+namespace evo::report {
 
 struct Color {
   std::uint8_t red = 0;
@@ -50,7 +50,7 @@ enum class PolarityColors {
 
 /// The events on white, each sensor pixel `zoom` x `zoom` px of the image; the last event of a pixel wins.
 /// Events off the sensor of `width` x `height` px are ignored.
-Canvas DrawEvents(const EventColumns& events, int width, int height, PolarityColors colors, int zoom = 1);
+Canvas DrawEvents(const events::EventColumns& events, int width, int height, PolarityColors colors, int zoom = 1);
 
 /// A colour that stays with a track, well apart from those of the next ids.
 Color TrackColor(std::int64_t id);
@@ -62,6 +62,6 @@ struct TrackDrawing {
 };
 
 /// The tracks alive at `t`, each a dot at its last position up to `t` with its tail of earlier ones, outlined in white.
-void DrawTracks(Canvas* canvas, const Tracks& tracks, TimeNs t, const TrackDrawing& drawing);
+void DrawTracks(Canvas* canvas, const events::Tracks& tracks, TimeNs t, const TrackDrawing& drawing);
 
-}  // namespace evo
+}  // namespace evo::report

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-namespace evo {
+namespace evo::report {
 
 /// A drawing in gnuplot's language.
 struct Figure {
@@ -28,4 +28,4 @@ class Gnuplot {
   bool available_ = true;
 };
 
-}  // namespace evo
+}  // namespace evo::report

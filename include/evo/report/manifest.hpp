@@ -9,7 +9,7 @@
 
 #include "evo/core/time.hpp"
 
-namespace evo {
+namespace evo::report {
 
 struct ManifestInput {
   std::string role;  ///< "events", "calibration", "ground_truth", ...
@@ -52,4 +52,4 @@ double PeakMemoryMb();
 /// Processor time that this process has used so far, all threads together, s.
 double CpuTimeS();
 
-}  // namespace evo
+}  // namespace evo::report

@@ -9,7 +9,7 @@
 #include "evo/report/csv.hpp"
 #include "evo/report/manifest.hpp"
 
-namespace evo {
+namespace evo::report {
 
 /// What a run left in its output folder, as far as a comparison of runs needs it.
 struct RunFolder {
@@ -29,4 +29,4 @@ struct RunFolder {
 /// a run leaves, and for files that are corrupt.
 std::vector<RunFolder> ReadRunFolders(const std::vector<std::filesystem::path>& paths);
 
-}  // namespace evo
+}  // namespace evo::report

@@ -6,7 +6,7 @@
 #include "evo/report/csv.hpp"
 #include "evo/report/run_folder.hpp"
 
-namespace evo {
+namespace evo::report {
 
 /// index.html: one page about all runs that needs nothing but itself: a sortable table, each run's trajectory and
 /// errors side by side, the parameters that differ, and for each run its plots, inputs, command line and warnings.
@@ -14,4 +14,4 @@ namespace evo {
 /// give the same bytes. Throws Error (kInput) if a plot cannot be read.
 std::string RunsPage(const std::string& title, const std::vector<RunFolder>& runs, const CsvTable& table);
 
-}  // namespace evo
+}  // namespace evo::report

@@ -7,7 +7,7 @@
 #include "evo/report/csv.hpp"
 #include "evo/report/run_folder.hpp"
 
-namespace evo {
+namespace evo::report {
 
 /// runs.csv: a row for each run and alignment, one row for a run that has no summary. Columns: `run`, `status` ("ok" or
 /// "failed") and `failure`; those of the runs' summary.csv in their order, new ones after the ones before; then
@@ -34,4 +34,4 @@ std::string ChooseAlignment(const std::vector<RunFolder>& runs, const std::strin
 /// run that failed or was not aligned so has a row that says it. Goes into a document that loads booktabs.
 std::string RunsLatex(const CsvTable& runs, const std::string& alignment);
 
-}  // namespace evo
+}  // namespace evo::report

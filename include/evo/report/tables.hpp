@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "evo/evaluation/evaluation.hpp"
-#include "evo/tracking/lifetime.hpp"
+#include "evo/evaluation/lifetime.hpp"
 
-namespace evo {
+namespace evo::report {
 
 /// NaN is an empty cell in CSV and null in JSON.
 using TableCell = std::variant<std::string, std::int64_t, double>;
@@ -21,7 +21,7 @@ using TableRow = std::vector<std::pair<std::string, TableCell>>;
 /// One row for each alignment: lengths in m, angles in degrees, percentages of the true path. Columns keep their names
 /// and order from version to version; new ones come last. `rebootstraps`: how often the odometry started anew, if
 /// known.
-std::vector<TableRow> SummaryRows(const std::string& sequence, const Evaluation& evaluation,
+std::vector<TableRow> SummaryRows(const std::string& sequence, const evaluation::Evaluation& evaluation,
                                   std::optional<std::int64_t> rebootstraps = std::nullopt);
 
 enum class Digits {
@@ -37,17 +37,17 @@ void WriteJson(const std::filesystem::path& path, const std::vector<TableRow>& r
 /// errors.csv: a row a pose, `stamp` (s, as in the estimate; `frame`, the number of the pose, for files without),
 /// `distance`, `longitudinal`, `lateral`, `vertical`, `planar`, `translation` (m, see PoseError and DrivingError for
 /// the signs) and `rotation_deg`.
-void WriteErrors(const std::filesystem::path& path, const std::vector<PoseError>& errors, bool has_stamps);
+void WriteErrors(const std::filesystem::path& path, const std::vector<evaluation::PoseError>& errors, bool has_stamps);
 
 /// lifetime.csv: columns `quantity,unit,bin_low,bin_high,value`. First the summary, whose bin columns are empty
 /// (frames, frame_interval, tracks, tracks_too_short, tracks_cut_short; mean, standard_deviation, median, max in frames
 /// and in s), then one row "histogram" a bin: `value` tracks live bin_low frames or more but fewer than bin_high; then
 /// the same in seconds, "histogram_s".
-void WriteLifetimes(const std::filesystem::path& path, const LifetimeStatistics& statistics);
+void WriteLifetimes(const std::filesystem::path& path, const evaluation::LifetimeStatistics& statistics);
 
 /// The summary for people: a few aligned lines that end with a newline.
-std::string FormatSummary(const Evaluation& evaluation);
+std::string FormatSummary(const evaluation::Evaluation& evaluation);
 /// One such line; `note` ends its bracket.
-std::string FormatLifetimes(const LifetimeStatistics& statistics, const std::string& note = "");
+std::string FormatLifetimes(const evaluation::LifetimeStatistics& statistics, const std::string& note = "");
 
-}  // namespace evo
+}  // namespace evo::report

@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "evo/core/parameters.hpp"
+#include "evo/core/random.hpp"
 #include "evo/core/time.hpp"
 #include "evo/events/event_columns.hpp"
-#include "evo/simulation/random.hpp"
 #include "evo/simulation/renderer.hpp"
 
-namespace evo {
+namespace evo::simulation {
 
 // The pixel of P. Lichtsteiner et al. (A 128 x 128 120 dB 15 us latency asynchronous temporal contrast vision sensor,
 // JSSC 2008): a logarithmic photoreceptor, a differencing amplifier, two comparators. Its noise and its dependence on
@@ -60,7 +60,7 @@ class EventSensor {
   /// order of time, the pixels row by row, stamps in whole microseconds (rounded down), at most readout_row_s later
   /// than `t`. The first call only sets the state. The tiles must be those of one cut of the sensor, the same at every
   /// call. Error (kInput) for radiance that is not finite, a tile outside the sensor or a time that does not advance.
-  void Advance(const Tile& tile, TimeNs t, std::span<const float> radiance, EventColumns* events);
+  void Advance(const Tile& tile, TimeNs t, std::span<const float> radiance, events::EventColumns* events);
 
  private:
   static constexpr std::size_t kRun = 64;
@@ -86,9 +86,9 @@ class EventSensor {
   void Check(const Tile& tile, std::span<const float> radiance) const;
   void Start(const Tile& tile, std::span<const float> radiance);
   std::int32_t Predict(const float* radiance, float duration_s, Run* run) const;
-  void AdvanceRun(const Step& step, const float* radiance, Run* run, EventColumns* events);
-  void Resolve(const Step& step, std::size_t k, Run* run, EventColumns* events);
-  void Emit(std::size_t pixel, TimeNs t, int sign, EventColumns* events) const;
+  void AdvanceRun(const Step& step, const float* radiance, Run* run, events::EventColumns* events);
+  void Resolve(const Step& step, std::size_t k, Run* run, events::EventColumns* events);
+  void Emit(std::size_t pixel, TimeNs t, int sign, events::EventColumns* events) const;
 
   std::size_t width_;
   std::size_t height_;
@@ -115,4 +115,4 @@ class EventSensor {
   std::vector<Random> random_;
 };
 
-}  // namespace evo
+}  // namespace evo::simulation

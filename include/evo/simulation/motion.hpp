@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "evo/core/parameters.hpp"
+#include "evo/core/random.hpp"
 #include "evo/geometry/trajectory.hpp"
-#include "evo/simulation/random.hpp"
 #include "evo/simulation/scene.hpp"
 
-namespace evo {
+namespace evo::simulation {
 
 // Where roads lead and how cameras move: pure functions of distance or time, continuous in velocity, safe to call from
 // many threads at once. Equal options and seeds give equal motion.
@@ -141,9 +141,9 @@ CameraMotion MakeSliderMotion(const SliderOptions& options);
 /// Smooth motion through the poses of a trajectory (cubic in position and rotation, continuous velocity), time counted
 /// from its first pose, world moved so that the first pose is the identity. Error (kInput) if there are fewer than two
 /// poses or they are not in order of time; the motion throws Error (kNothingToDo) at times outside the trajectory.
-CameraMotion MakeMotionThrough(const Trajectory& trajectory);
+CameraMotion MakeMotionThrough(const geometry::Trajectory& trajectory);
 
 /// The poses at 0, 1 / rate_hz, ... up to `duration`, stamped from `epoch` on.
-Trajectory TrueTrajectory(const CameraMotion& motion, TimeNs duration, double rate_hz, TimeNs epoch);
+geometry::Trajectory TrueTrajectory(const CameraMotion& motion, TimeNs duration, double rate_hz, TimeNs epoch);
 
-}  // namespace evo
+}  // namespace evo::simulation

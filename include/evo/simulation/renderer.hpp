@@ -10,7 +10,7 @@
 #include "evo/simulation/scene.hpp"
 #include "evo/simulation/surface_tree.hpp"
 
-namespace evo {
+namespace evo::simulation {
 
 /// Pixels x0 <= x < x0 + width, y0 <= y < y0 + height of the raw image.
 struct Tile {
@@ -39,7 +39,7 @@ class Renderer {
   /// pixel to pixel the grid is shifted by less than such a step, so that an edge that runs along the pixels is at its
   /// place on average over them, not at the nearest step.
   /// Throws Error(kInput) where `samples` is not in [1, 16] or a surface names a texture or body that is not there.
-  Renderer(const Scene& scene, const Camera& camera, int samples);
+  Renderer(const Scene& scene, const geometry::Camera& camera, int samples);
 
   /// Indices of the surfaces that any pixel of `tile` may see while the camera goes from one pose to the other during
   /// [from, to]: what Render and Depth need, to be found anew every few milliseconds of motion. On the way camera and
@@ -47,8 +47,8 @@ class Renderer {
   struct Visible {
     std::vector<int> surfaces;
   };
-  Visible FindVisible(const Tile& tile, TimeNs from, TimeNs to, const SE3& T_world_cam_from,
-                      const SE3& T_world_cam_to) const;
+  Visible FindVisible(const Tile& tile, TimeNs from, TimeNs to, const geometry::SE3& T_world_cam_from,
+                      const geometry::SE3& T_world_cam_to) const;
 
   /// Radiance of pixels (row by row) in two parts, so that lamps may flicker faster than scenes are rendered: at time t
   /// it is steady + Flicker(lighting, t) * lamps.
@@ -59,16 +59,17 @@ class Renderer {
   };
 
   /// What the pixels of `tile` see with the camera and the bodies as at time `t`. 0 where the lens model has no ray.
-  void Render(const Tile& tile, const Visible& visible, TimeNs t, const SE3& T_world_cam, Radiance* radiance) const;
+  void Render(const Tile& tile, const Visible& visible, TimeNs t, const geometry::SE3& T_world_cam,
+              Radiance* radiance) const;
 
   /// Depth (z in the camera frame, m) along the rays through the pixel centres of the nearest surface that covers half
   /// or more there, NaN where there is only sky or no ray; and 1 where it is of something that moves, else 0.
-  void Depth(const Tile& tile, const Visible& visible, TimeNs t, const SE3& T_world_cam, std::span<float> depth,
-             std::span<std::uint8_t> moving) const;
+  void Depth(const Tile& tile, const Visible& visible, TimeNs t, const geometry::SE3& T_world_cam,
+             std::span<float> depth, std::span<std::uint8_t> moving) const;
 
   /// Upper estimate of the mean speed, in px/s, of what `tile` shows between the two poses and times.
-  double ImageSpeed(const Tile& tile, const Visible& visible, TimeNs from, TimeNs to, const SE3& T_world_cam_from,
-                    const SE3& T_world_cam_to) const;
+  double ImageSpeed(const Tile& tile, const Visible& visible, TimeNs from, TimeNs to,
+                    const geometry::SE3& T_world_cam_from, const geometry::SE3& T_world_cam_to) const;
 
  private:
   /// Rays (x, y, 1) through the plane z = 1: those of a pixel one after the other, pixels row by row.
@@ -86,11 +87,11 @@ class Renderer {
   Eigen::Matrix2d PixelsPerStep(int x, int y) const;
 
   const Scene& scene_;
-  const Camera& camera_;
+  const geometry::Camera& camera_;
   SurfaceTree tree_;
   std::vector<std::uint8_t> blind_;  ///< per pixel: a ray of it has no direction
   Rays samples_;
   Rays centres_;
 };
 
-}  // namespace evo
+}  // namespace evo::simulation

@@ -8,7 +8,7 @@
 #include "evo/geometry/se3.hpp"
 #include "evo/simulation/texture.hpp"
 
-namespace evo {
+namespace evo::simulation {
 
 // The simulated world, in metres. World frame as in MVSEC's truth: that of the camera at the start of the run, x right,
 // y down, z forward, so that "up" is -y and a level road lies at y = height of the camera. Textures are looked up from
@@ -30,7 +30,7 @@ struct Surface {
 
 /// Something rigid that moves. Body 0 of a scene is the static world (identity).
 struct Body {
-  std::function<SE3(TimeNs)> T_world_body;  ///< time since the start of the run
+  std::function<geometry::SE3(TimeNs)> T_world_body;  ///< time since the start of the run
 };
 
 /// A street lamp: light that falls off with the square of the distance and flickers with the mains, all in step.
@@ -59,6 +59,6 @@ struct Scene {
 };
 
 /// Where the camera is at a time since the start of the run: T_world_cam, smooth and the same for equal arguments.
-using CameraMotion = std::function<SE3(TimeNs)>;
+using CameraMotion = std::function<geometry::SE3(TimeNs)>;
 
-}  // namespace evo
+}  // namespace evo::simulation

@@ -10,7 +10,7 @@
 #include "evo/simulation/simulate.hpp"
 #include "evo/simulation/world.hpp"
 
-namespace evo {
+namespace evo::simulation {
 
 /// All that a scene file may say.
 struct SceneOptions {
@@ -36,7 +36,7 @@ void Register(Parameters& parameters, SceneOptions& options);
 /// A scene that is ready to be simulated.
 struct SimulatedRun {
   Scene scene;
-  Camera camera;
+  geometry::Camera camera;
   CameraMotion motion;
   TimeNs duration = 0;  ///< of the motion
   TimeNs before = 0;    ///< the motion is known since so long before time 0
@@ -51,6 +51,6 @@ SimulatedRun MakeRun(const SceneOptions& options);
 SimulatedRun PartOf(const SimulatedRun& run, TimeNs from, TimeNs duration);
 
 /// `motion` at 0, 1 / hz, 2 / hz, ... and at `duration`.
-Trajectory Sample(const CameraMotion& motion, TimeNs duration, double hz);
+geometry::Trajectory Sample(const CameraMotion& motion, TimeNs duration, double hz);
 
-}  // namespace evo
+}  // namespace evo::simulation

@@ -7,14 +7,14 @@
 #include "evo/core/parameters.hpp"
 #include "evo/core/progress.hpp"
 #include "evo/core/time.hpp"
+#include "evo/events/depth_map.hpp"
 #include "evo/events/event_columns.hpp"
+#include "evo/events/grey_image.hpp"
 #include "evo/geometry/camera.hpp"
-#include "evo/io/depth_maps.hpp"
-#include "evo/io/grey_image.hpp"
 #include "evo/simulation/event_sensor.hpp"
 #include "evo/simulation/scene.hpp"
 
-namespace evo {
+namespace evo::simulation {
 
 struct SimulationOptions {
   int samples = 2;                ///< rays a pixel, along each side
@@ -37,10 +37,10 @@ class SimulationSink {
  public:
   virtual ~SimulationSink() = default;
   /// The next events; may be none.
-  virtual void OnEvents(const EventColumns& events) = 0;
+  virtual void OnEvents(const events::EventColumns& events) = 0;
   /// `events_before` of all events so far have stamps before `t`.
-  virtual void OnImage(TimeNs t, const GreyImage& image, std::size_t events_before) = 0;
-  virtual void OnDepth(TimeNs t, const DepthMap& depth) = 0;
+  virtual void OnImage(TimeNs t, const events::GreyImage& image, std::size_t events_before) = 0;
+  virtual void OnDepth(TimeNs t, const events::DepthMap& depth) = 0;
 };
 
 struct SimulationCounts {
@@ -57,8 +57,9 @@ struct SimulationCounts {
 /// light changes linearly but for the lamps' flicker, which the sensor sees in full. Images and depth maps are rendered
 /// at their exact times. The result depends on `seed` and the options alone, not on how many threads `pool` has.
 /// `progress` may be null.
-SimulationCounts Simulate(const Scene& scene, const Camera& camera, const CameraMotion& motion, TimeNs lead_in,
-                          TimeNs duration, const SensorOptions& sensor, const SimulationOptions& options,
-                          std::uint64_t seed, ThreadPool* pool, Progress* progress, SimulationSink* sink);
+SimulationCounts Simulate(const Scene& scene, const geometry::Camera& camera, const CameraMotion& motion,
+                          TimeNs lead_in, TimeNs duration, const SensorOptions& sensor,
+                          const SimulationOptions& options, std::uint64_t seed, ThreadPool* pool, Progress* progress,
+                          SimulationSink* sink);
 
-}  // namespace evo
+}  // namespace evo::simulation

@@ -8,7 +8,7 @@
 #include "evo/geometry/se3.hpp"
 #include "evo/simulation/scene.hpp"
 
-namespace evo {
+namespace evo::simulation {
 
 /// A bundle of rays (x, y, 1) with x, y between the bounds, on the plane z = 1 of a camera.
 struct RayBox {
@@ -26,8 +26,8 @@ class SurfaceTree {
   explicit SurfaceTree(const Scene& scene);
 
   /// Sorted indices.
-  std::vector<int> Find(const RayBox& rays, TimeNs from, TimeNs to, const SE3& T_world_cam_from,
-                        const SE3& T_world_cam_to) const;
+  std::vector<int> Find(const RayBox& rays, TimeNs from, TimeNs to, const geometry::SE3& T_world_cam_from,
+                        const geometry::SE3& T_world_cam_to) const;
 
  private:
   struct Node {
@@ -55,6 +55,6 @@ class SurfaceTree {
 };
 
 /// T_world_body of `body` at `t`: the identity for body 0.
-SE3 BodyPose(const Scene& scene, int body, TimeNs t);
+geometry::SE3 BodyPose(const Scene& scene, int body, TimeNs t);
 
-}  // namespace evo
+}  // namespace evo::simulation

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace evo {
+namespace evo::simulation {
 
 /// What a surface shows at one place.
 struct Texel {
@@ -60,4 +60,4 @@ inline float QuickLog2(float x) {
   return exponent + (2.0F - m * (1.0F / 3.0F)) * m - 5.0F / 3.0F;
 }
 
-}  // namespace evo
+}  // namespace evo::simulation

@@ -8,7 +8,7 @@
 #include "evo/simulation/motion.hpp"
 #include "evo/simulation/scene.hpp"
 
-namespace evo {
+namespace evo::simulation {
 
 struct StreetOptions {
   double road_width_m = 7.0;     ///< both lanes; the camera drives in the middle of the right one
@@ -46,4 +46,4 @@ Scene MakeRoom(std::uint64_t seed);
 /// 1 m to the right, in the style of slider_depth.
 Scene MakeSliderScene(std::uint64_t seed);
 
-}  // namespace evo
+}  // namespace evo::simulation

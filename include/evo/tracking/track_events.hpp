@@ -1,17 +1,17 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "evo/core/parallel.hpp"
 #include "evo/events/event_history.hpp"
+#include "evo/events/event_reader.hpp"
+#include "evo/events/tracks.hpp"
 #include "evo/geometry/camera.hpp"
-#include "evo/io/event_reader.hpp"
-#include "evo/io/tracks.hpp"
-#include "evo/tracking/track_buffer.hpp"
 #include "evo/tracking/tracker_options.hpp"
 
-namespace evo {
+namespace evo::tracking {
 
 /// What a stream held, beside its tracks.
 struct TrackingResult {
@@ -22,8 +22,8 @@ struct TrackingResult {
 
 /// What an observer of the tracker sees after each event frame, to draw it.
 struct TrackingView {
-  const EventHistory& history;
-  const Tracks& tracks;  ///< their last frames, before shake is given back
+  const events::EventHistory& history;
+  const events::Tracks& tracks;  ///< their last frames, before shake is given back
   TimeNs t;
 };
 
@@ -32,8 +32,11 @@ struct TrackingView {
 /// tracks, of features seen in two event frames at least, as soon as they are final, see TrackBuffer. Memory does not
 /// grow with the length of the stream but for the stamps. Throws Error (kNothingToDo) if the stream is shorter than one
 /// window.
-TrackingResult TrackEvents(EventReader* reader, const Camera& camera, const TrackerOptions& options, ThreadPool* pool,
-                           const TrackSink& sink, const std::function<void(double)>& progress,
+TrackingResult TrackEvents(events::EventReader* reader, const geometry::Camera& camera, const TrackerOptions& options,
+                           ThreadPool* pool, const events::TrackSink& sink, const std::function<void(double)>& progress,
                            const std::function<void(const TrackingView&)>& observe = {});
 
-}  // namespace evo
+/// What the positions of the tracker of `options.method` are, one line for the head of a track file.
+std::string DescribePositions(const TrackerOptions& options);
+
+}  // namespace evo::tracking

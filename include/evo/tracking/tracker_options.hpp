@@ -4,7 +4,7 @@
 
 #include "evo/core/parameters.hpp"
 
-namespace evo {
+namespace evo::tracking {
 
 /// Parameters of the baseline, KLT on event images.
 struct KltOptions {
@@ -77,4 +77,4 @@ struct TrackerOptions {
 
 void Register(Parameters& parameters, TrackerOptions& options);
 
-}  // namespace evo
+}  // namespace evo::tracking

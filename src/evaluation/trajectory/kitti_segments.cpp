@@ -1,0 +1,39 @@
+#include "evo/evaluation/kitti_segments.hpp"
+
+#include <cstddef>
+#include <numbers>
+
+namespace evo::evaluation {
+
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+}  // namespace
+
+KittiSegments ComputeKittiSegments(const MatchedPath& path, std::span<const double> lengths_m, int step) {
+  KittiSegments segments;
+  segments.step = step;
+  std::vector<double> all_translations;
+  std::vector<double> all_rotations;
+  for (const double length : lengths_m) {
+    std::vector<double> translations;
+    std::vector<double> rotations;
+    std::size_t last = 0;  // ends only move forward with their starts, as distances never fall
+    for (std::size_t first = 0; first < path.size(); first += static_cast<std::size_t>(step)) {
+      while (last < path.size() && path.distance[last] <= path.distance[first] + length) ++last;
+      if (last == path.size()) break;
+      translations.push_back(100.0 * path.TranslationError(first, last) / length);
+      rotations.push_back(kDegrees * Angle(path.RotationError(first, last)) / length);
+    }
+    if (translations.empty()) continue;
+    segments.lengths.push_back({length, ComputeStatistics(translations), ComputeStatistics(rotations)});
+    all_translations.insert(all_translations.end(), translations.begin(), translations.end());
+    all_rotations.insert(all_rotations.end(), rotations.begin(), rotations.end());
+  }
+  segments.translation_percent = ComputeStatistics(all_translations);
+  segments.rotation_deg_per_m = ComputeStatistics(all_rotations);
+  return segments;
+}
+
+}  // namespace evo::evaluation

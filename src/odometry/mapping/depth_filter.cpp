@@ -1,0 +1,139 @@
+#include "evo/odometry/depth_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "evo/geometry/triangulation.hpp"
+
+namespace evo::odometry {
+
+namespace {
+
+constexpr double kPriorCount = 10.0;  // a = b at the start
+
+double NormalDensity(double x, double mean, double variance) {
+  const double d = x - mean;
+  return std::exp(-0.5 * d * d / variance) / std::sqrt(2.0 * std::numbers::pi * variance);
+}
+
+/// Distance of the sighting to its epipolar line in px.
+double EpipolarDistance(const Seed& seed, const Feature& feature, const geometry::SE3& T_cam_key) {
+  const Eigen::Vector3d line = T_cam_key.translation().cross(T_cam_key.rotation() * seed.ray);
+  const double length = line.head<2>().norm();
+  if (!(length > 1e-12)) return 0.0;  // at the epipole every direction fits
+  const Eigen::Vector2d across = line.head<2>() / length;
+  const double distance = feature.x.homogeneous().dot(line) / length;
+  return (feature.px_per_unit * (distance * across)).norm();
+}
+
+}  // namespace
+
+void Register(Parameters& parameters, DepthFilterOptions& options) {
+  parameters.Add("odometry.depth_filter.pixel_noise", &options.pixel_noise, 0.05, 10,
+                 "noise of a sighting in px, one sigma");
+  parameters.Add("odometry.depth_filter.convergence", &options.convergence, 5, 10000,
+                 "a seed has converged when sigma < range / this");
+  parameters.Add("odometry.depth_filter.epipolar_px", &options.epipolar_px, 0.1, 50,
+                 "a sighting farther from its epipolar line is a failed match");
+  parameters.Add("odometry.depth_filter.min_inlier_ratio", &options.min_inlier_ratio, 0, 1,
+                 "a seed with a smaller share of good measurements is dropped");
+  parameters.Add("odometry.depth_filter.max_age", &options.max_age, 1, 1000,
+                 "key frames after which a seed that has not converged is dropped");
+}
+
+void UpdateSeed(double x, double tau, Seed* seed) {
+  const double tau2 = tau * tau;
+  const double spread2 = seed->sigma2 + tau2;
+  const double s2 = 1.0 / (1.0 / seed->sigma2 + 1.0 / tau2);
+  const double m = s2 * (seed->mu / seed->sigma2 + x / tau2);
+  const double a = seed->a;
+  const double b = seed->b;
+  double c1 = a / (a + b) * NormalDensity(x, seed->mu, spread2);
+  double c2 = b / (a + b) / seed->z_range;
+  const double sum = c1 + c2;
+  if (!(sum > 0.0) || !std::isfinite(sum) || !std::isfinite(m)) return;
+  c1 /= sum;
+  c2 /= sum;
+  // First and second moment of the Beta part, then of the Gaussian part, of the true posterior.
+  const double f = c1 * (a + 1.0) / (a + b + 1.0) + c2 * a / (a + b + 1.0);
+  const double e = c1 * (a + 1.0) * (a + 2.0) / ((a + b + 1.0) * (a + b + 2.0)) +
+                   c2 * a * (a + 1.0) / ((a + b + 1.0) * (a + b + 2.0));
+  const double mu = c1 * m + c2 * seed->mu;
+  const double sigma2 = c1 * (s2 + m * m) + c2 * (seed->sigma2 + seed->mu * seed->mu) - mu * mu;
+  const double new_a = (e - f) / (f - e / f);
+  const double new_b = new_a * (1.0 - f) / f;
+  if (!std::isfinite(new_a) || !std::isfinite(new_b) || !(sigma2 > 0.0)) return;
+  seed->mu = mu;
+  seed->sigma2 = sigma2;
+  seed->a = new_a;
+  seed->b = new_b;
+}
+
+double DepthUncertainty(const Eigen::Vector3d& ray, const Eigen::Vector3d& t, double z, double angle) {
+  const Eigen::Vector3d back = z * ray - t;  // from the second camera to the point
+  const double baseline = t.norm();
+  const double alpha = std::atan2(ray.cross(t).norm(), ray.dot(t));
+  const double beta = std::atan2(back.cross(-t).norm(), back.dot(-t));
+  const double gamma = std::numbers::pi - alpha - (beta + angle);  // at the point, after the angle has grown
+  if (!(std::sin(gamma) > 0.0 && gamma > 0.0)) return std::numeric_limits<double>::infinity();
+  return std::abs(baseline * std::sin(beta + angle) / std::sin(gamma) - z);
+}
+
+DepthFilter::DepthFilter(const DepthFilterOptions& options, double px_angle, OnConverged on_converged)
+    : options_(options), px_angle_(px_angle), on_converged_(std::move(on_converged)) {}
+
+void DepthFilter::AddSeed(const Feature& feature, int key_frame, double mean_depth, double min_depth) {
+  const auto place = std::ranges::lower_bound(seeds_, feature.track, {}, &Seed::track);
+  if (place != seeds_.end() && place->track == feature.track) return;
+  Seed seed;
+  seed.track = feature.track;
+  seed.key_frame = key_frame;
+  seed.ray = feature.x.homogeneous().normalized();
+  seed.x = feature.x;
+  seed.a = seed.b = kPriorCount;
+  seed.mu = 1.0 / mean_depth;
+  seed.z_range = 1.0 / min_depth;
+  seed.sigma2 = seed.z_range * seed.z_range / 36.0;
+  seeds_.insert(place, seed);
+}
+
+void DepthFilter::Update(const Frame& frame, const std::function<geometry::SE3(int)>& T_cam_key) {
+  auto kept = seeds_.begin();
+  for (auto& seed : seeds_) {
+    const Feature* const feature = frame.Find(seed.track);
+    const Verdict verdict = feature ? Measure(*feature, T_cam_key(seed.key_frame), &seed) : Verdict::kKeep;
+    if (verdict == Verdict::kConverged) on_converged_(seed);
+    if (verdict == Verdict::kKeep) *kept++ = seed;
+  }
+  seeds_.erase(kept, seeds_.end());
+}
+
+DepthFilter::Verdict DepthFilter::Measure(const Feature& feature, const geometry::SE3& T_cam_key, Seed* seed) const {
+  const auto depths = geometry::TriangulatePair(seed->x, feature.x, T_cam_key);
+  if (EpipolarDistance(*seed, feature, T_cam_key) > options_.epipolar_px) {
+    seed->b += 1.0;
+  } else if (depths && depths->z1 > 0.0 && depths->z2 > 0.0) {   // else the point is too far for this baseline
+    const double z = depths->z1 * seed->x.homogeneous().norm();  // along the ray
+    const double tau =
+        DepthUncertainty(seed->ray, T_cam_key.Inverse().translation(), z, options_.pixel_noise * px_angle_);
+    const double tau_inverse = 0.5 * (1.0 / std::max(1e-7, z - tau) - 1.0 / (z + tau));
+    if (std::isfinite(tau)) UpdateSeed(1.0 / z, tau_inverse, seed);
+  }
+  if (seed->inlier_ratio() < options_.min_inlier_ratio) return Verdict::kDrop;
+  const bool converged = std::sqrt(seed->sigma2) < seed->z_range / options_.convergence && seed->mu > 0.0;
+  return converged ? Verdict::kConverged : Verdict::kKeep;
+}
+
+void DepthFilter::DropOld(int key_frame) {
+  std::erase_if(seeds_, [&](const Seed& seed) { return key_frame - seed.key_frame > options_.max_age; });
+}
+
+void DepthFilter::Drop(std::int64_t track) {
+  std::erase_if(seeds_, [&](const Seed& seed) { return seed.track == track; });
+}
+
+bool DepthFilter::Has(std::int64_t track) const { return std::ranges::binary_search(seeds_, track, {}, &Seed::track); }
+
+}  // namespace evo::odometry

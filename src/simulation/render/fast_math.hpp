@@ -1,0 +1,35 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+
+namespace evo::simulation {
+
+/// log(x) for x in [1e-37, 3e38], to 1e-6 + 1e-7 |log(x)|: without branches or tables, so that a loop over pixels is
+/// vectorised, and the same on every machine. x = 2^e m, log(m) = 2 artanh((m - 1) / (m + 1)) by its series.
+inline float FastLog(float x) {
+  constexpr std::int32_t kHalfRoot = 0x3F3504F3;  // sqrt(1/2): m in [sqrt(1/2), sqrt(2))
+  const auto bits = std::bit_cast<std::int32_t>(x);
+  const std::int32_t exponent = (bits - kHalfRoot) >> 23;
+  const float m = std::bit_cast<float>(bits - exponent * (1 << 23));
+  const float z = (m - 1.0F) / (m + 1.0F);
+  const float z2 = z * z;
+  const float series = z * (2.0F + z2 * (2.0F / 3.0F + z2 * (2.0F / 5.0F + z2 * (2.0F / 7.0F))));
+  return static_cast<float>(exponent) * 0.69314718F + series;
+}
+
+/// 1 - exp(-x) for x >= 0 (infinity included), relative error below 1e-6 for small and large x alike: the share of its
+/// way that a low-pass goes in x time constants. Without branches, like FastLog. x = k log(2) - r, |r| <= log(2) / 2,
+/// exp(r) - 1 by its series.
+inline float FastOneMinusExp(float x) {
+  const float bounded = x < 80.0F ? x : 80.0F;
+  const auto k = static_cast<std::int32_t>(bounded * 1.44269504F + 0.5F);
+  const auto whole = static_cast<float>(k);
+  const float r = (whole * 0.693359375F - bounded) - whole * 2.12194440e-4F;  // log(2) in two parts
+  const float series =
+      r * (1.0F + r * (0.5F + r * (1.0F / 6.0F + r * (1.0F / 24.0F + r * (1.0F / 120.0F + r * (1.0F / 720.0F))))));
+  const float scale = std::bit_cast<float>((127 - k) * (1 << 23));
+  return (1.0F - scale) - scale * series;
+}
+
+}  // namespace evo::simulation

@@ -1,0 +1,64 @@
+#include "evo/core/random.hpp"
+#include "evo/simulation/world.hpp"
+#include "simulation/world/scene_builder.hpp"
+#include "simulation/world/textures.hpp"
+
+namespace evo::simulation {
+
+namespace {
+
+constexpr std::uint64_t kStream = 0x736C69646572;
+constexpr double kWall = 1.4;   // depth, m
+constexpr double kTable = 0.2;  // below the camera, m
+constexpr double kLeft = -0.9;  // of what is furnished: the way is 1 m to the right
+constexpr double kRight = 1.9;
+const Eigen::Vector3d kTowardsCamera(0.0, 0.0, -1.0);
+
+void AddRoom(SceneBuilder* builder, Random* random) {
+  const auto plain = [&](double reflectance) {
+    Look look = builder->Whole(builder->Add(PaintPlain(*random, reflectance)));
+    look.texels = {640.0, 640.0};
+    return look;
+  };
+  builder->Add({-6.0, -4.0, kWall}, {12.0, 0.0, 0.0}, {0.0, 8.0, 0.0}, plain(0.65), kTowardsCamera);
+  builder->Add({-6.0, kTable, 0.1}, {12.0, 0.0, 0.0}, {0.0, 0.0, kWall}, plain(0.45), -Eigen::Vector3d::UnitY());
+}
+
+/// Posters on the wall with bare wall between them.
+void AddPosters(SceneBuilder* builder, Random* random) {
+  for (double x = kLeft; x < kRight; x += 0.55 + random->Uniform(0.1, 0.3)) {
+    const double size = random->Uniform(0.4, 0.55);
+    const int picture = builder->Add(random->Chance(0.2) ? PaintPicture(*random) : PaintPlacard(*random));
+    builder->Add({x, random->Uniform(-0.75, -0.5), kWall - 0.01}, {size, 0.0, 0.0}, {0.0, size, 0.0},
+                 builder->Whole(picture), kTowardsCamera);
+  }
+}
+
+/// A row of upright boxes on the table: books at the back, packets nearer by.
+void AddRow(SceneBuilder* builder, double depth, double tallest, double gap, Random* random) {
+  for (double x = kLeft + random->Uniform(0.0, gap); x < kRight;) {
+    const double height = tallest * random->Uniform(0.5, 1.0);
+    const Eigen::Vector3d size(height * random->Uniform(0.4, 0.8), height, height * random->Uniform(0.3, 0.6));
+    const Eigen::Vector3d centre(x, kTable - 0.5 * height, depth + random->Uniform(-0.05, 0.05));
+    builder->AddBox(centre, size, random->Uniform(-0.6, 0.6), builder->Add(PaintBoxSide(*random)),
+                    random->Uniform(0.6, 1.1));
+    x += size.x() + gap * random->Uniform(0.5, 1.5);
+  }
+}
+
+}  // namespace
+
+Scene MakeSliderScene(std::uint64_t seed) {
+  SceneBuilder builder;
+  Random random(seed, kStream);
+  builder.SetSun({Eigen::Vector3d(-0.4, -0.6, -0.69).normalized(), 0.5});
+  builder.lighting().sky = 0.0;
+  AddRoom(&builder, &random);
+  AddPosters(&builder, &random);
+  AddRow(&builder, 1.0, 0.4, 0.2, &random);
+  AddRow(&builder, 0.7, 0.22, 0.25, &random);
+  AddRow(&builder, 0.42, 0.11, 0.3, &random);
+  return builder.Take();
+}
+
+}  // namespace evo::simulation

@@ -1,0 +1,179 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "simulation/world/street.hpp"
+
+namespace evo::simulation {
+
+namespace {
+
+constexpr std::uint64_t kParkedStream = 0x7061726B;
+constexpr std::uint64_t kOncomingStream = 0x6D6F7665;
+constexpr std::uint64_t kAheadStream = 0x6168656164;
+constexpr double kLength = 4.3;
+constexpr double kWidth = 1.72;
+constexpr double kHeight = 1.5;
+constexpr double kBonnet = 0.87;  // height
+constexpr double kTexelLength = kLength / 512.0;
+constexpr double kTexelHeight = kHeight / 256.0;
+constexpr double kHeadway = 1.3;      // s from car to car
+constexpr double kStandingGap = 7.0;  // m from middle to middle, standing
+
+// Cars of a few shapes, built in a frame on the ground below their middle: x right, y down, z forward.
+class CarFactory {
+ public:
+  CarFactory(SceneBuilder* builder, bool night, Random* random) : builder_(*builder), night_(night) {
+    for (std::size_t i = 0; i < sides_.size(); ++i) sides_[i] = builder_.Add(PaintCarSide(kRears[i]));
+    for (const bool front : {false, true}) ends_[front ? 1 : 0] = builder_.Add(PaintCarEnd(*random, front));
+    paint_ = builder_.Add(PaintCarPaint(*random));
+    glass_ = builder_.Add(PaintCarGlass(*random));
+    shadow_ = builder_.Add(PaintCarShadow());
+  }
+
+  // `pose` of the car in the frame of `body`.
+  void Build(const geometry::SE3& pose, int body, Random* random) {
+    pose_ = pose;
+    body_ = body;
+    tone_ = random->Chance(0.5) ? random->Uniform(0.15, 0.5) : random->Uniform(0.6, 1.25);
+    const int shape = random->Index(static_cast<int>(sides_.size()));
+    const double front = 0.5 * kLength;
+    for (const double side : {-0.5, 0.5}) {
+      Add({side * kWidth, -kHeight, front}, {0.0, 0.0, -kLength}, {0.0, kHeight, 0.0}, sides_[shape], tone_,
+          {side, 0.0, 0.0});
+    }
+    for (const double end : {-1.0, 1.0}) {
+      Add({end * 0.5 * kWidth, -kBonnet, end * front}, {-end * kWidth, 0.0, 0.0}, {0.0, 0.65, 0.0},
+          ends_[end > 0.0 ? 1 : 0], tone_, {0.0, 0.0, end});
+    }
+    AddTop(kRears[shape]);
+    Add({-0.55 * kWidth, -0.015, 0.52 * kLength}, {1.1 * kWidth, 0.0, 0.0}, {0.0, 0.0, -1.04 * kLength}, shadow_, 1.0,
+        {0.0, -1.0, 0.0});
+    if (night_ && body != 0) AddLights();
+  }
+
+ private:
+  static constexpr std::array<double, 3> kRears = {425.0, 460.0, 500.0};  // see PaintCarSide
+
+  void Add(const Eigen::Vector3d& origin, const Eigen::Vector3d& u, const Eigen::Vector3d& v, int texture, double tone,
+           const Eigen::Vector3d& outwards, double emission = 0.0) {
+    Look look = builder_.Whole(texture, tone);
+    look.body = body_;
+    look.emission = emission;
+    builder_.Add(pose_ * origin, pose_.rotation() * u, pose_.rotation() * v, look, pose_.rotation() * outwards);
+  }
+
+  // Bonnet, wind screen, roof, rear window and boot along the outline of the side.
+  void AddTop(double rear) {
+    const double roof_front = 130.0 + 104.0;
+    const double roof_rear = rear - 104.0 / 2.2;
+    const double roof = kHeight - 6.0 * kTexelHeight;
+    struct Corner {
+      double u, height;
+      int texture;  // of the piece from here to the next
+    };
+    const std::array<Corner, 6> outline = {{{2.0, kBonnet - 0.03, paint_},
+                                            {130.0, kBonnet, glass_},
+                                            {roof_front, roof, paint_},
+                                            {roof_rear, roof, glass_},
+                                            {rear, kBonnet, paint_},
+                                            {510.0, kBonnet - 0.02, paint_}}};
+    for (std::size_t i = 0; i + 1 < outline.size(); ++i) {
+      const auto point = [&](const Corner& corner) {
+        return Eigen::Vector3d(-0.5 * kWidth, -corner.height, 0.5 * kLength - corner.u * kTexelLength);
+      };
+      const Eigen::Vector3d from = point(outline[i]);
+      Add(from, {kWidth, 0.0, 0.0}, point(outline[i + 1]) - from, outline[i].texture,
+          outline[i].texture == glass_ ? 1.0 : tone_, {0.0, -1.0, 0.0});
+    }
+  }
+
+  void AddLights() {
+    for (const double side : {-0.7, 0.46}) {
+      const double x = side * 0.5 * kWidth;
+      Add({x, -0.75, 0.5 * kLength + 0.01}, {0.22, 0.0, 0.0}, {0.0, 0.14, 0.0}, paint_, 1.0, {0.0, 0.0, 1.0}, 3.0);
+      Add({x, -0.8, -0.5 * kLength - 0.01}, {0.22, 0.0, 0.0}, {0.0, 0.12, 0.0}, paint_, 1.0, {0.0, 0.0, -1.0}, 0.4);
+    }
+  }
+
+  SceneBuilder& builder_;
+  bool night_;
+  std::array<int, 3> sides_;
+  std::array<int, 2> ends_;  // rear, front
+  int paint_ = 0;
+  int glass_ = 0;
+  int shadow_ = 0;
+  geometry::SE3 pose_;
+  int body_ = 0;
+  double tone_ = 1.0;
+};
+
+// Stands on the road at this place, heading along it or back.
+geometry::SE3 CarPose(const StreetPlan& plan, double distance, double lateral, bool back) {
+  const Eigen::Vector3d forward = (back ? -1.0 : 1.0) * plan.Forward(distance);
+  const Eigen::Vector3d right = (back ? -1.0 : 1.0) * plan.Right(distance);
+  Eigen::Matrix3d axes;
+  axes << right, forward.cross(right), forward;
+  return {Eigen::Quaterniond(axes), plan.At(distance, lateral, 0.0)};
+}
+
+}  // namespace
+
+void AddParkedCars(const StreetTask& task) {
+  Random random(task.seed, kParkedStream);
+  const StreetPlan& plan = task.plan;
+  const double length = plan.end() - plan.begin();
+  const int count = static_cast<int>(std::lround(task.options.parked_cars_per_100_m * length / 100.0));
+  if (count == 0 || plan.layout().parking_m < kWidth + 0.2) return;
+  CarFactory cars(&task.builder, task.night, &random);
+  for (const int side : {-1, 1}) {
+    const int on_side = side < 0 ? count / 2 : count - count / 2;
+    // One to a slot that is long enough, so that none stand in each other.
+    const double slot = std::max(length / std::max(1, on_side), kLength + 0.6);
+    for (int i = 0; i < on_side && (i + 1) * slot <= length; ++i) {
+      const double s = plan.begin() + i * slot + 0.5 * kLength + random.Uniform(0.3, slot - kLength);
+      const double lateral = plan.kerb(side) - side * (0.5 * kWidth + 0.1 + random.Uniform(0.0, 0.1));
+      if (!plan.IsClearOfCrossings(s - 0.5 * kLength, s + 0.5 * kLength, 4.0)) continue;
+      cars.Build(CarPose(plan, s, lateral, side < 0), 0, &random);
+    }
+  }
+}
+
+void AddOncomingCars(const StreetTask& task) {
+  Random random(task.seed, kOncomingStream);
+  const StreetOptions& options = task.options;
+  const double from = task.plan.begin();
+  const double length = task.plan.end() - from;
+  const int count = static_cast<int>(std::lround(options.oncoming_cars_per_100_m * length / 100.0));
+  if (count == 0) return;
+  CarFactory cars(&task.builder, task.night, &random);
+  const double spacing = length / count;
+  const double first = random.Uniform(0.0, length);
+  for (int i = 0; i < count; ++i) {
+    const double start = first + (i + random.Uniform(-0.3, 0.3)) * spacing;
+    Body body;
+    body.T_world_body = [=, plan = task.shared_plan, speed = options.oncoming_car_speed_m_s](TimeNs t) {
+      const double passed = std::fmod(start - speed * ToSeconds(t), length);
+      return CarPose(*plan, from + (passed < 0.0 ? passed + length : passed), -0.5 * plan->layout().lanes_m, true);
+    };
+    cars.Build(geometry::SE3(), task.builder.AddBody(std::move(body)), &random);
+  }
+}
+
+void AddCarsAhead(const StreetTask& task, const std::function<double(TimeNs)>& camera_distance_m) {
+  if (task.options.cars_ahead == 0 || !camera_distance_m) return;
+  Random random(task.seed, kAheadStream);
+  CarFactory cars(&task.builder, task.night, &random);
+  for (int i = 1; i <= task.options.cars_ahead; ++i) {
+    const double gap = kStandingGap * i + random.Uniform(0.0, 2.0);
+    const TimeNs headway = FromSeconds(kHeadway * i);
+    Body body;
+    body.T_world_body = [=, plan = task.shared_plan](TimeNs t) {
+      return CarPose(*plan, camera_distance_m(t + headway) + gap, 0.0, false);
+    };
+    cars.Build(geometry::SE3(), task.builder.AddBody(std::move(body)), &random);
+  }
+}
+
+}  // namespace evo::simulation
