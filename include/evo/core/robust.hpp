@@ -2,24 +2,24 @@
 
 namespace evo {
 
-/// Weights of iteratively reweighted least squares (P. J. Huber: Robust Statistics, 1981). The argument is the error over
-/// the scale, or its square, so it has no unit.
+// Weights of iteratively reweighted least squares (P. J. Huber: Robust Statistics, 1981). Errors and widths share a unit.
 
-/// Of the efficiency of least squares under Gaussian noise each loss keeps 95 % at this width, in standard deviations.
+/// At these widths, in standard deviations, each loss keeps 95 % of least squares' efficiency under Gaussian noise.
 inline constexpr double kHuberWidth = 1.345;
 inline constexpr double kTukeyWidth = 4.685;
 inline constexpr double kCauchyWidth = 2.385;
 
-/// Weight of Cauchy's loss, log(1 + u^2) / 2, at u^2 = `squared`.
-inline double CauchyWeight(double squared) { return 1.0 / (1.0 + squared); }
+/// Weight of Cauchy's loss, w^2 log(1 + e^2 / w^2) / 2, at the squared error over the squared width.
+inline double CauchyWeight(double normalized_squared) { return 1.0 / (1.0 + normalized_squared); }
 
-/// Weight of Huber's loss for an error `u` >= 0 in units of the width.
-inline double HuberWeight(double u) { return u <= 1.0 ? 1.0 : 1.0 / u; }
+/// Weight of Huber's loss for an `error` >= 0.
+inline double HuberWeight(double error, double width) { return error <= width ? 1.0 : width / error; }
 
-/// Weight of Tukey's biweight loss for an error `u` in units of the width: 0 from |u| = 1 on.
-inline double TukeyWeight(double u) {
-  const double rest = 1.0 - u * u;
-  return rest > 0.0 ? rest * rest : 0.0;
+/// Weight of Tukey's biweight loss for an `error` >= 0: none from the width on.
+inline double TukeyWeight(double error, double width) {
+  if (error >= width) return 0.0;
+  const double inside = 1.0 - error * error / (width * width);
+  return inside * inside;
 }
 
 }  // namespace evo
