@@ -15,14 +15,18 @@ if(EVO_SANITIZE)
   target_link_options(evo_flags INTERFACE -fsanitize=${EVO_SANITIZE})
 endif()
 
-# evo_module(<name> SOURCES <file>... DEPENDS <module or library>...)
-# One static library a module; it may depend only on modules listed above it in CMakeLists.txt.
+# evo_module(<name> SOURCES <file>... DEPENDS <module or library>... [PRECOMPILE <header>...])
+# One static library a module; it depends only on modules listed above it in CMakeLists.txt (scripts/check.py checks
+# that). PRECOMPILE names the headers of libraries that most of its files include: they are parsed once.
 function(evo_module name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRECOMPILE" ${ARGN})
   add_library(evo_${name} STATIC ${ARG_SOURCES})
   add_library(evo::${name} ALIAS evo_${name})
   target_include_directories(evo_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(evo_${name} PUBLIC ${ARG_DEPENDS} PRIVATE evo_flags)
+  if(ARG_PRECOMPILE)
+    target_precompile_headers(evo_${name} PRIVATE ${ARG_PRECOMPILE})
+  endif()
 endfunction()
 
 # evo_test(<module> SOURCES <file>... [DEPENDS <library>...])
@@ -31,6 +35,7 @@ function(evo_test name)
   add_executable(${name}_test ${ARG_SOURCES})
   target_include_directories(${name}_test PRIVATE ${PROJECT_SOURCE_DIR}/tests ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(${name}_test PRIVATE evo::${name} ${ARG_DEPENDS} GTest::gtest_main evo_flags)
+  target_precompile_headers(${name}_test PRIVATE <gtest/gtest.h> <filesystem> <fstream> <functional> <string> <vector>)
   # GCC 12 sees overlaps in chains of string + string where there are none (its bug 105329).
   target_compile_options(${name}_test PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
   target_compile_definitions(${name}_test PRIVATE EVO_SOURCE_DIR="${PROJECT_SOURCE_DIR}")

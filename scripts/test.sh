@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Sets up and runs all tests. Ends with ctest's summary and its exit code; options go to ctest (test.sh -R io).
+# Installs what is missing, builds, and runs all tests. Options go to ctest: scripts/test.sh -R io
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-scripts/setup.sh
+scripts/setup.sh --tests
 exec ctest --preset release "$@"
