@@ -57,12 +57,12 @@ def plot_bars(out: Path, name: str, y_label: str, rows: Sequence[Row], group: st
     groups = list(dict.fromkeys(str(row[group]) for row in rows))
     bars = list(dict.fromkeys(str(row[bar]) for row in rows))
     cells = {(row[group], row[bar]): row.get(value) for row in rows}
-    if all(cell is None for cell in cells.values()):
+    if not any(isinstance(cell, (int, float)) and cell > 0 for cell in cells.values()):
         return []
     lines = [",".join(["scene", *bars])]
     for g in groups:
         found = [cells.get((g, b)) for b in bars]
-        lines.append(",".join([g, *("?" if cell is None else f"{cell:.9g}" for cell in found)]))
+        lines.append(",".join([g, *("?" if cell is None or cell <= 0 else f"{cell:.9g}" for cell in found)]))
     write_text(out / f"{name}.dat", "\n".join(lines) + "\n")
     script = f"""set terminal svg size {360 + len(groups) * (40 + 20 * len(bars))},450 noenhanced background "white"
 set output "{name}.svg"
