@@ -7,6 +7,10 @@ from pathlib import Path
 
 from support import BenchTest
 
+from bench import targets
+from bench.bumps import bump_stamp, scaled
+from bench.scenes import Part, Scene, Sequence
+
 TRACKING = ("tracking", "--features", "20", "--repeats", "2", "driving_day.yaml")
 
 
@@ -192,6 +196,26 @@ class Odometry(BenchTest):
         self.assertEqual(self.bench("odometry", "--seeds", "1", "--config", "ours", "slider.yaml"), 1)
         self.assertTrue(self.table("out/bench_odometry/odometry.csv")[0]["failure"].startswith("exit code 6: "))
         self.assertIn("missed: 1 of 1 failed", self.out)
+
+
+class Bumps(BenchTest):
+    def test_stamp_of_the_first_bump(self) -> None:
+        scene = Scene(Path("driving_day.yaml"), None)
+        self.write("sequence/manifest.json", '{"parameters": {"output": {"start_s": 100}}}')
+
+        def stamp(part: Part, bumps: str) -> float | None:
+            sequence = Sequence(scene, "1", part, self.folder / "sequence", "", ())
+            return bump_stamp(sequence, {targets.BUMPS_AT: bumps})
+
+        self.assertEqual(stamp(Part("", "60"), "52,56"), 152)
+        self.assertEqual(stamp(Part("45", "15"), "52,56"), 107)
+        self.assertIsNone(stamp(Part("50", "8"), "52,56"), "not 5 s before")
+        self.assertIsNone(stamp(Part("", "60"), "every 5"))
+        self.assertIsNone(stamp(Part("", "60"), '""'))
+
+    def test_positions_are_scaled(self) -> None:
+        self.assertEqual(scaled("# t x y z\n1.5 1 2 -3 0 0 0 1\n", 2.0),
+                         "1.5 2.000000000 4.000000000 -6.000000000 0 0 0 1\n")
 
 
 class WrongWords(BenchTest):

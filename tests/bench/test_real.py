@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import unittest
 
 from support import ROOT, BenchTest
@@ -38,6 +39,57 @@ class RealProgram(BenchTest):
         self.assertEqual(rows[0]["sim3_mean_planar_percent"], "", "a straight line")
         self.assertAlmostEqual(float(rows[3]["recorded_s"]), 1.0, delta=0.05)
         self.assertEqual(self.bench("docs", "--to", "benchmarks.md"), 0, self.err)
+
+    def test_given_tracks_are_followed_as_our_own(self) -> None:
+        from bench.program import find_program
+        street = ROOT / "data_samples" / "street"
+        find_program().output("track", "--events", str(street), "--no-plots", "--quiet", "--out", "tracked")
+        (self.folder / "given").mkdir()
+        for file in (self.folder / "tracked/tracks.txt", street / "street_gt.hdf5",
+                     street / "camchain-imucam-street.yaml"):
+            shutil.copy(file, self.folder / "given")
+        self.assertEqual(self.bench("odometry", "--config", "ours", "--recording", "given", "--recording", str(street)),
+                         0, self.err)
+        given, ours = self.table("out/bench_odometry/odometry.csv")
+        for name in ("mean_planar_percent", "coverage_since_start_share"):
+            self.assertEqual(given[name], ours[name])
+        self.assertEqual(given["run_x_real_time"], "", "nothing was tracked")
+        self.assertGreater(float(given["odometry_x_real_time"]), 0)
+        self.assertGreater(float(given["sim3_ape_rmse_percent"]), 0)
+
+    def test_without_depth_tracks_are_triangulated(self) -> None:
+        from bench.program import find_program
+        find_program().output("simulate", "slider.yaml", "--format", "uzh", "--set", "simulation.depth_hz=0", "--quiet",
+                              "--out", "flat")
+        (self.folder / "flat/depth_gt.hdf5").unlink(missing_ok=True)
+        self.assertEqual(self.bench("tracking", "--recording", "flat", "--methods", "em", "--features", "20",
+                                    "--repeats", "1"), 0, self.err)
+        row = self.table("out/bench_tracking/tracking.csv")[0]
+        self.assertEqual((row["truth"], row["track_error_median_px"]), ("triangulated", ""))
+        self.assertGreater(float(row["triangulation_residual_median_px"]), 0)
+
+    def test_lower_thresholds_make_more_events(self) -> None:
+        self.assertEqual(self.bench("scaling", "--methods", "em", "--features", "20", "--repeats", "1", "slider.yaml"),
+                         0, self.err)
+        rates = [float(row["events_per_s"]) for row in self.table("out/bench_tracking/scaling_events.csv")]
+        self.assertGreater(rates[1], 1.4 * rates[0])
+        self.assertGreater(rates[2], 1.4 * rates[1])
+        lengths = [float(row["recorded_s"]) for row in self.table("out/bench_tracking/scaling_length.csv")]
+        self.assertLess(lengths[0], lengths[2])
+
+    def test_the_papers_configuration_follows_the_street(self) -> None:
+        from bench import targets
+        from bench.measures import Manifest
+        from bench.program import find_program
+        program, paper = find_program(), str(ROOT / "configs/paper.yaml")
+        program.output("config", "--check", paper)
+        printed = program.output("run", "--config", paper, "--no-plots", "--quiet", "--events",
+                                 str(ROOT / "data_samples/street"), "--out", "paper")
+        self.assertIn("coverage 100.0 %", printed)
+        manifest = Manifest(self.folder / "paper/manifest.json")
+        for name in ("tracker.ego_motion", "tracker.rotation_correction", "tracker.rotation_spline",
+                     "odometry.window_refinement", "odometry.final_refinement", "odometry.bootstrap.refine"):
+            self.assertIs(manifest.parameter(targets.parameter(name)), False, name)
 
     def test_parameters_of_the_benchmarks_exist(self) -> None:
         from bench import compare_commands, targets
