@@ -1,0 +1,1 @@
+"""Benchmarks of evo-run: `python3 -m bench --help`."""
