@@ -1,5 +1,6 @@
 #include "evo/core/parameters.hpp"
 
+#include <spdlog/spdlog.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <iterator>
 #include <numeric>
 #include <set>
+#include <stdexcept>
 #include <utility>
 
 #include "evo/core/error.hpp"
@@ -73,6 +75,20 @@ void Parameters::Add(std::string name, std::string* value, std::function<bool(co
   entries_.push_back({std::move(name), value, 0, 0, {}, std::move(help), std::move(valid), std::move(expected)});
 }
 
+void Parameters::Alias(std::string old_name, std::string_view name) {
+  Entry* const entry = Find(name);
+  if (!entry) throw std::logic_error("alias '" + old_name + "' of an unknown parameter");
+  entry->old_names.push_back(std::move(old_name));
+}
+
+const std::string& Parameters::CurrentName(const std::string& name) const {
+  const auto has_name = [&](const Entry& entry) {
+    return std::ranges::find(entry.old_names, name) != entry.old_names.end();
+  };
+  const auto found = std::ranges::find_if(entries_, has_name);
+  return found == entries_.end() ? name : found->name;
+}
+
 void Parameters::LoadFile(const std::filesystem::path& path) {
   if (std::filesystem::is_directory(path)) throw ConfigurationError(path.string(), "is a folder; give a YAML file");
   std::ifstream file(path, std::ios::binary);
@@ -99,7 +115,7 @@ void Parameters::LoadText(const std::string& yaml, const std::string& source) {
     for (const auto& item : node) {
       const std::string name = prefix + item.first.Scalar();
       if (item.second.IsScalar()) {
-        if (!seen.insert(name).second) throw ConfigurationError(place(item.first.Mark()), "'" + name + "' comes twice");
+        if (!seen.insert(CurrentName(name)).second) throw ConfigurationError(place(item.first.Mark()), "'" + name + "' comes twice");
         Assign(name, item.second.Scalar(), place(item.first.Mark()));
       } else if (item.second.IsMap()) {
         visit(item.second, name + ".");
@@ -129,7 +145,9 @@ std::string Parameters::Nearest(std::string_view name) const {
   return nearest == entries_.end() ? "" : nearest->name;
 }
 
-void Parameters::Assign(const std::string& name, const std::string& text, const std::string& where) {
+void Parameters::Assign(const std::string& given_name, const std::string& text, const std::string& where) {
+  const std::string& name = CurrentName(given_name);
+  if (name != given_name) spdlog::warn("{}: parameter '{}' is now called '{}'", where, given_name, name);
   Entry* const entry = Find(name);
   if (!entry) {
     throw ConfigurationError(where, "unknown parameter '" + name + "'; did you mean '" + Nearest(name) + "'?");

@@ -24,6 +24,8 @@ class Parameters {
   /// Any text that is `valid`; `expected` says what is.
   void Add(std::string name, std::string* value, std::function<bool(const std::string&)> valid, std::string expected,
            std::string help);
+  /// Accepts the former name of parameter `name` in files and settings, with a warning on the log at each use.
+  void Alias(std::string old_name, std::string_view name);
 
   void LoadFile(const std::filesystem::path& path);
   /// `source` names the text in messages.
@@ -47,9 +49,12 @@ class Parameters {
     std::string help;
     std::function<bool(const std::string&)> valid;  ///< of a text without choices
     std::string expected;
+    std::vector<std::string> old_names = {};
   };
 
   Entry* Find(std::string_view name);
+  /// The present name of the parameter that was called `name`; `name` itself if it is no former name.
+  const std::string& CurrentName(const std::string& name) const;
   std::string Nearest(std::string_view name) const;
   /// `where` names the place in messages, for example "run.yaml:3".
   void Assign(const std::string& name, const std::string& text, const std::string& where);
