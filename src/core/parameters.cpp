@@ -115,7 +115,8 @@ void Parameters::LoadText(const std::string& yaml, const std::string& source) {
     for (const auto& item : node) {
       const std::string name = prefix + item.first.Scalar();
       if (item.second.IsScalar()) {
-        if (!seen.insert(CurrentName(name)).second) throw ConfigurationError(place(item.first.Mark()), "'" + name + "' comes twice");
+        if (!seen.insert(CurrentName(name)).second)
+          throw ConfigurationError(place(item.first.Mark()), "'" + name + "' comes twice");
         Assign(name, item.second.Scalar(), place(item.first.Mark()));
       } else if (item.second.IsMap()) {
         visit(item.second, name + ".");

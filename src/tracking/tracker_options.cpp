@@ -21,8 +21,9 @@ void RegisterFeatures(Parameters& parameters, TrackerOptions& o) {
 void RegisterWindow(Parameters& parameters, TrackerOptions& o) {
   parameters.Add("tracker.window_motion_px", &o.window_motion_px, 0.5, 20.0,
                  "motion of a feature within its window of events (px)");
-  parameters.Add("tracker.window_curvature_px", &o.window_curvature_px, 0.001, 1000.0,
-                 "maximum deviation from a straight path within half a window, by the typical angular acceleration (px)");
+  parameters.Add(
+      "tracker.window_curvature_px", &o.window_curvature_px, 0.001, 1000.0,
+      "maximum deviation from a straight path within half a window, by the typical angular acceleration (px)");
   parameters.Add("tracker.min_window_s", &o.min_window_s, 0.0005, 1.0, "minimum length of a window (s)");
   parameters.Add("tracker.max_window_s", &o.max_window_s, 0.001, 1.0, "maximum length of a window (s)");
   parameters.Add("tracker.min_events", &o.min_events, 10, 10000,
@@ -58,8 +59,7 @@ void RegisterCameraMotion(Parameters& parameters, TrackerOptions& o) {
                  "align all features again after an unpredicted rotation of the camera");
   parameters.Add("tracker.rotation_spline", &o.rotation_spline,
                  "restore the fast rotation that windows average away, by a spline");
-  parameters.Add("tracker.epipolar_filter", &o.epipolar_filter,
-                 "filter the positions across their epipolar lines");
+  parameters.Add("tracker.epipolar_filter", &o.epipolar_filter, "filter the positions across their epipolar lines");
   parameters.Add("tracker.use_polarity", &o.use_polarity, "associate only events of equal polarity");
 }
 
@@ -99,8 +99,7 @@ void RegisterDetection(Parameters& parameters, TrackerOptions& o) {
 
 void RegisterKlt(Parameters& parameters, KltOptions& o) {
   parameters.Add("tracker.klt.events", &o.events, 100, 1000000, "number of newest events in an image");
-  parameters.Add("tracker.klt.max_window_s", &o.max_window_s, 0.001, 1.0,
-                 "maximum age of an event in an image (s)");
+  parameters.Add("tracker.klt.max_window_s", &o.max_window_s, 0.001, 1.0, "maximum age of an event in an image (s)");
   parameters.Add("tracker.klt.patch_radius_px", &o.patch_radius_px, 2, 40, "half side of a patch (px)");
   parameters.Add("tracker.klt.forward_backward_px", &o.forward_backward_px, 0.01, 20.0,
                  "maximum distance between a position and its forward-backward track (px)");
