@@ -52,8 +52,8 @@ EventHistogram MakeTemplate(const events::LocalEvents& events, int radius) {
   EventHistogram histogram(radius, 2);
   const Eigen::Vector2f v = kFlow.cast<float>();
   for (std::size_t i = 0; i < events.size(); ++i) {
-    histogram.Vote(events.x[i] - v.x() * events.dt[i], events.y[i] - v.y() * events.dt[i], histogram.PlaneOf(events.polarity[i]),
-             1.0f);
+    histogram.Vote(events.x[i] - v.x() * events.dt[i], events.y[i] - v.y() * events.dt[i],
+                   histogram.PlaneOf(events.polarity[i]), 1.0f);
   }
   return histogram;
 }

@@ -106,7 +106,8 @@ TEST(AlignToTemplate, OneStepIsTheLeastSquaresOfTheShifts) {
     right += row * Eigen::RowVector2d(association[1], association[2]);
     inliers += association[0];
     all += association[3];
-    if (association[0] > 0.0) squares += (association[1] * association[1] + association[2] * association[2]) / association[0];
+    if (association[0] > 0.0)
+      squares += (association[1] * association[1] + association[2] * association[2]) / association[0];
   }
   const Eigen::Matrix<double, 4, 2> step = 1.5 * normal.inverse() * right;
   const AlignmentQuality quality = AlignToTemplate(events, table, 2, {1, 15.0, 0.02, 20.0, 10.0}, true, &motion);
@@ -167,7 +168,8 @@ TEST(AlignToTemplate, TellsForeignEventsFromItsOwn) {
   const events::LocalEvents own = PatchEvents({}, 0.01, 500, 3);
   const events::LocalEvents foreign = PatchEvents(elsewhere, 0.01, 500, 4);
   PatchMotion a, b;
-  const AlignmentOptions options{20, 15.0, 0.01, 20.0, 50.0, table.ComputeSelfBias(histogram, Matrix2d::Identity(), 15.0)};
+  const AlignmentOptions options{20,   15.0, 0.01,
+                                 20.0, 50.0, table.ComputeSelfBias(histogram, Matrix2d::Identity(), 15.0)};
   EXPECT_GT(AlignToTemplate(own, table, 2, options, true, &a).inlier_ratio,
             1.5 * AlignToTemplate(foreign, table, 2, options, true, &b).inlier_ratio);
 }

@@ -70,7 +70,8 @@ TEST(EventHistogram, TotalIsTheSumOfTheCells) {
   };
   const auto expect_sum = [](const EventHistogram& histogram) {
     double sum = 0.0;
-    for (int p = 0; p < 2; ++p) sum = std::accumulate(histogram.plane(p), histogram.plane(p) + histogram.side() * histogram.side(), sum);
+    for (int p = 0; p < 2; ++p)
+      sum = std::accumulate(histogram.plane(p), histogram.plane(p) + histogram.side() * histogram.side(), sum);
     EXPECT_NEAR(histogram.Total(), sum, 1e-4 * sum);
   };
   EventHistogram histogram = random_histogram();

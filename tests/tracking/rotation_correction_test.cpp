@@ -14,7 +14,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-const Vector3d kRotation(0.02, -0.005, 0.01);  // rad
+const Vector3d kRotation(0.02, -0.005, 0.01);     // rad
 const Vector3d kAngularVelocity(0.5, -0.1, 0.3);  // rad/s
 
 std::vector<PredictionResidual> Residuals(const JacobianTable& jacobians, int count, double noise_px, unsigned seed) {
@@ -25,8 +25,8 @@ std::vector<PredictionResidual> Residuals(const JacobianTable& jacobians, int co
   for (int i = 0; i < count; ++i) {
     const Vector2d position(173.0 + 150.0 * uniform(random), 130.0 + 110.0 * uniform(random));
     const auto& J_pixel_rotation = jacobians.Lookup(position).J_pixel_rotation;
-    residuals.push_back(
-        {J_pixel_rotation, J_pixel_rotation * kRotation + noise(), J_pixel_rotation * kAngularVelocity + 20.0 * noise()});
+    residuals.push_back({J_pixel_rotation, J_pixel_rotation * kRotation + noise(),
+                         J_pixel_rotation * kAngularVelocity + 20.0 * noise()});
   }
   return residuals;
 }
