@@ -1,63 +1,30 @@
-"""Everything that is measured against: parameter names, scenes, ablated ingredients, targets, published figures.
-
-A parameter stands here under its new name. `OLD_NAMES` holds the name that the program knew before; `parameter` chooses.
-"""
+"""Everything that is measured against: parameter names, scenes, ablated ingredients, targets, published figures."""
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-# False: the program is called with the old names. True: with the new ones (the program accepts both from 1.0 on).
-USE_NEW_NAMES = False
-
-OLD_NAMES = {
-    "tracker.window_curvature_px": "tracker.window_bend_px",
-    "tracker.rotation_correction": "tracker.follow_jolts",
-    "tracker.rotation_spline": "tracker.restore_shake",
-    "tracker.uninformative_ratio": "tracker.uninformative_share",
-    "tracker.rejection_ratio": "tracker.odd_share",
-    "tracker.min_events": "tracker.fewest_events",
-    "tracker.corner_min_spacing_px": "tracker.corner_closest_px",
-    "odometry.final.velocity_change_scale": "odometry.final.motion",
-    "odometry.final.drift_variance_ratio": "odometry.final.drift",
-    "odometry.final.track_noise": "odometry.final.own_noise",
-    "odometry.covariance.variance_inflation": "odometry.covariance.alike",
-    "odometry.covariance.rotation_bias_ratio": "odometry.covariance.turn",
-}
-
-
-def parameter(name: str) -> str:
-    """The name under which the program knows a parameter."""
-    return name if USE_NEW_NAMES else OLD_NAMES.get(name, name)
-
-
-def setting(text: str) -> str:
-    """NAME=VALUE with the name that the program knows."""
-    name, _, value = text.partition("=")
-    return f"{parameter(name)}={value}"
-
-
 # Parameters that a benchmark varies itself.
-METHOD = parameter("tracker.method")
-FEATURES = parameter("tracker.features")
-CORNER_SPACING = parameter("tracker.corner_spacing_px")
-THRESHOLDS = [parameter(f"sensor.threshold_{name}") for name in ("on", "off", "spread")]
-BUMPS_AT = parameter("motion.vehicle.bumps_at_s")
-MOTION_KIND = parameter("motion.kind")
-RPE_PAIRS_FROM = parameter("evaluation.rpe_pairs_from")
+METHOD = "tracker.method"
+FEATURES = "tracker.features"
+CORNER_SPACING = "tracker.corner_spacing_px"
+THRESHOLDS = [f"sensor.threshold_{name}" for name in ("on", "off", "spread")]
+BUMPS_AT = "motion.vehicle.bumps_at_s"
+MOTION_KIND = "motion.kind"
+RPE_PAIRS_FROM = "evaluation.rpe_pairs_from"
 
 # A drive of few events, 10 minutes of which need little disk.
-SLOW_DRIVE = [setting(text) for text in (
+SLOW_DRIVE = [
     "scene.calibration=davis240c",
     "motion.vehicle.speed_m_s=1",
     "motion.vehicle.duration_s=600",
     "sensor.threshold_on=0.35",
     "sensor.threshold_off=0.12",
     "simulation.samples=1",
-    "simulation.longest_step_s=0.01",
+    "simulation.max_step_s=0.01",
     "simulation.image_hz=0",
     "simulation.depth_hz=0",
     "output.pose_hz=20",
-)]
+]
 
 # Scenes that are measured unless others are named, [FROM+]SECONDS behind the colon.
 TRACKING_SCENES = ["driving_day:20+8", "driving_night:20+8", "bumps:3+8", "stop_and_go:14+9", "handheld_boxes:4+6"]
@@ -70,7 +37,7 @@ MORE_FEATURES = f"{FEATURES}=300"
 BASELINE = f"{METHOD}=klt"
 
 # Each switches one ingredient off.
-ABLATIONS = [setting(text) for text in (
+ABLATIONS = [
     "odometry.ground.hold_height=false",
     "odometry.final.velocity_change_scale=0",
     "odometry.final.drift_variance_ratio=0",
@@ -90,7 +57,7 @@ ABLATIONS = [setting(text) for text in (
     "tracker.rejection_ratio=0",
     "tracker.template_gain=1",
     "tracker.use_polarity=false",
-)]
+]
 
 
 @dataclass(frozen=True)

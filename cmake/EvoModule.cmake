@@ -15,18 +15,24 @@ if(EVO_SANITIZE)
   target_link_options(evo_flags INTERFACE -fsanitize=${EVO_SANITIZE})
 endif()
 
-# evo_module(<name> SOURCES <file>... DEPENDS <module or library>... [PRECOMPILE <header>...])
+# evo_module(<name> SOURCES <file>... DEPENDS <module or library>...)
 # One static library a module; it depends only on modules listed above it in CMakeLists.txt (scripts/check.py checks
-# that). PRECOMPILE names the headers of libraries that most of its files include: they are parsed once.
+# that).
 function(evo_module name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRECOMPILE" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
   add_library(evo_${name} STATIC ${ARG_SOURCES})
   add_library(evo::${name} ALIAS evo_${name})
   target_include_directories(evo_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(evo_${name} PUBLIC ${ARG_DEPENDS} PRIVATE evo_flags)
-  if(ARG_PRECOMPILE)
-    target_precompile_headers(evo_${name} PRIVATE ${ARG_PRECOMPILE})
+  # Headers of libraries that most files of the module include are parsed once.
+  set(precompiled <algorithm> <filesystem> <functional> <string> <vector>)
+  if(NOT name MATCHES "^(core|events)$")
+    list(APPEND precompiled <Eigen/Cholesky> <Eigen/Core> <Eigen/Geometry> <Eigen/LU>)
   endif()
+  if(name STREQUAL app)
+    list(APPEND precompiled <CLI/CLI.hpp>)
+  endif()
+  target_precompile_headers(evo_${name} PRIVATE ${precompiled})
 endfunction()
 
 # evo_test(<module> SOURCES <file>... [DEPENDS <library>...])

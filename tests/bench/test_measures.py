@@ -51,12 +51,6 @@ class Targets(unittest.TestCase):
         self.assertTrue(applies(target, {"features": 122, "mean_live_features": 101.0}))
         self.assertFalse(applies(target, {"features": 20, "mean_live_features": 17.0}))
 
-    def test_both_names_of_a_parameter_exist(self) -> None:
-        for new, old in targets.OLD_NAMES.items():
-            self.assertEqual(new.split(".")[:-1], old.split(".")[:-1])
-            self.assertEqual(targets.parameter(new), new if targets.USE_NEW_NAMES else old)
-        self.assertEqual(targets.setting("tracker.features=3"), "tracker.features=3")
-
     def test_enough_of_each(self) -> None:
         self.assertEqual(len(targets.TRACKING_TARGETS), 20)
         self.assertEqual(len(targets.ODOMETRY_TARGETS), 36)

@@ -48,7 +48,9 @@ struct ShakyTracks {
         constexpr int kSteps = 40;
         for (int k = 0; k < kSteps; ++k) {
           const double share = (k + 0.5) * 2.0 / kSteps - 1.0;
-          const auto seen = [&](double reach) { return camera.Project(geometry::so3::Exp(Turn(t + reach * share)) * rays[i]); };
+          const auto seen = [&](double reach) {
+            return camera.Project(geometry::so3::Exp(Turn(t + reach * share)) * rays[i]);
+          };
           mean += seen(std::hypot(half, kSmearS)) / kSteps;
           slope += 3.0 * share / half * seen(half) / kSteps;
         }
@@ -79,7 +81,7 @@ struct ShakyTracks {
 /// All of them, taken for one stretch.
 events::Tracks Restored(const ShakyTracks& scene) {
   events::Tracks restored = scene.smoothed;
-  RestoreShake(scene.camera, LensGrid(scene.camera), scene.smoothed, scene.windows, 0, restored);
+  RestoreShake(scene.camera, JacobianTable(scene.camera), scene.smoothed, scene.windows, 0, restored);
   return restored;
 }
 
@@ -154,7 +156,7 @@ TEST(RestoreShake, LeavesInstantsAlone) {
   ShakyTracks scene(0.1);
   scene.windows.assign(scene.windows.size(), {});
   EXPECT_TRUE(Restored(scene) == scene.smoothed);
-  RestoreShake(scene.camera, LensGrid(scene.camera), {}, {}, 0, {});
+  RestoreShake(scene.camera, JacobianTable(scene.camera), {}, {}, 0, {});
 }
 
 }  // namespace
