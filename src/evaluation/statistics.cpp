@@ -28,7 +28,7 @@ Statistics ComputeStatistics(std::span<const double> errors) {
   std::vector<double> values(errors.begin(), errors.end());
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
-  // Of an even number the two in the middle count; the lower of them is the largest below.
+  // An even number has two middle values; the lower one is the largest before `middle`.
   statistics.median = values.size() % 2 ? *middle : 0.5 * (*std::max_element(values.begin(), middle) + *middle);
   const auto [min, max] = std::ranges::minmax(errors);
   statistics.min = min;
