@@ -87,13 +87,13 @@ std::vector<PosePair> AssociateWithin(const geometry::Trajectory& truth, const g
   auto pairs = Associate(crops ? Crop(truth, evaluation.from, evaluation.to) : truth, estimate, options);
   std::erase_if(pairs, [&](const PosePair& p) { return p.t_truth < evaluation.from || p.t_truth > evaluation.to; });
   if (!pairs.empty()) return pairs;
-  throw Error(ErrorKind::kNothingToDo,
-              fmt::format("no estimated pose has a true one: the estimate covers {}, the ground truth {}, the evaluated "
-                          "interval is {}; check that both use one clock (--time-offset) and the tolerance "
-                          "(--max-difference)",
-                          FormatInterval(estimate.front().t, estimate.back().t),
-                          FormatInterval(truth.front().t, truth.back().t),
-                          FormatInterval(evaluation.from, evaluation.to)));
+  throw Error(
+      ErrorKind::kNothingToDo,
+      fmt::format("no estimated pose has a true one: the estimate covers {}, the ground truth {}, the evaluated "
+                  "interval is {}; check that both use one clock (--time-offset) and the tolerance "
+                  "(--max-difference)",
+                  FormatInterval(estimate.front().t, estimate.back().t),
+                  FormatInterval(truth.front().t, truth.back().t), FormatInterval(evaluation.from, evaluation.to)));
 }
 
 /// Aligns poses, then projects them.
@@ -199,7 +199,8 @@ Evaluation Evaluate(const geometry::Trajectory& truth, const geometry::Trajector
     if (nees.pose.count > 0) {
       evaluation.nees = nees;
     } else {
-      evaluation.skipped.emplace_back("covariances: none belongs to a matched pose, or no matched pose is their origin");
+      evaluation.skipped.emplace_back(
+          "covariances: none belongs to a matched pose, or no matched pose is their origin");
     }
   }
   return evaluation;

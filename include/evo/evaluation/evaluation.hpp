@@ -36,10 +36,10 @@ struct AlignedEvaluation {
 
 /// Errors of the estimate under all alignments.
 struct Evaluation {
-  bool has_stamps = true;  ///< otherwise stamps are the numbers of the poses in s
-  TimeNs from = 0;         ///< start of the evaluated interval
-  TimeNs to = 0;           ///< its end
-  TimeNs max_gap = 0;      ///< a longer time without an estimated pose is a gap
+  bool has_stamps = true;      ///< otherwise stamps are the numbers of the poses in s
+  TimeNs from = 0;             ///< start of the evaluated interval
+  TimeNs to = 0;               ///< its end
+  TimeNs max_gap = 0;          ///< a longer time without an estimated pose is a gap
   geometry::Trajectory truth;  ///< the true poses of the interval and the ones next to it, projected if requested
   Eigen::Vector3d up;          ///< unit vector along an axis of the truth's world frame
   double path_m = 0.0;         ///< length of the true path from the first matched pose to the last (m)

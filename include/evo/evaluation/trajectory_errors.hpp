@@ -20,8 +20,8 @@ struct PositionError {
 
 /// Absolute errors of one aligned pose.
 struct PoseError {
-  TimeNs stamp = 0;      ///< as in the estimate
-  double seconds = 0.0;  ///< since the start of the evaluated interval
+  TimeNs stamp = 0;       ///< as in the estimate
+  double seconds = 0.0;   ///< since the start of the evaluated interval
   double distance = 0.0;  ///< travelled by the truth since the first matched pose (m)
   PositionError position;
   double translation = 0.0;  ///< length of the position error (m)
@@ -85,7 +85,7 @@ struct SubTrajectoryErrors {
 struct ScaleSample {
   double seconds = 0.0;   ///< since the start of the evaluated interval
   double distance = 0.0;  ///< along the matched true positions (m)
-  double ratio = 0.0;     ///< true over aligned size of the path; 1 where the alignment's scale holds, NaN if undetermined
+  double ratio = 0.0;  ///< true over aligned size of the path; 1 where the alignment's scale holds, NaN if undetermined
 };
 
 /// Errors over segments of the path.

@@ -8,9 +8,9 @@ namespace evo::evaluation {
 
 namespace {
 
-constexpr int kMaxDepthIterations = 50;    // the fixed-point iteration diverges on surfaces nearly along the ray
-constexpr double kDepthTolerance = 1e-9;   // relative
-constexpr int kMaxBisections = 30;         // from a second to a nanosecond
+constexpr int kMaxDepthIterations = 50;     // the fixed-point iteration diverges on surfaces nearly along the ray
+constexpr double kDepthTolerance = 1e-9;    // relative
+constexpr int kMaxBisections = 30;          // from a second to a nanosecond
 constexpr double kSameRayTolerance = 1e-6;  // on the plane z = 1
 
 /// The four pixels around a position with their bilinear weights.
@@ -170,8 +170,7 @@ std::vector<double> DepthReprojection::OtherSurfaceDepths(const Eigen::Vector3d&
 }
 
 /// Interpolated in inverse depth, which is linear on a plane. Empty if unknown or across a depth edge.
-std::optional<double> DepthReprojection::SurfaceDepth(const events::DepthMap& map,
-                                                      const Eigen::Vector2d& pixel) const {
+std::optional<double> DepthReprojection::SurfaceDepth(const events::DepthMap& map, const Eigen::Vector2d& pixel) const {
   const PixelNeighbours neighbours = FindNeighbours(map, pixel);
   if (!std::ranges::all_of(neighbours.depth, IsKnown)) return std::nullopt;
   if (std::ranges::max(neighbours.depth) > (1.0 + depth_edge_ratio_) * std::ranges::min(neighbours.depth)) {

@@ -67,8 +67,8 @@ class PointFollower {
 
   void CheckOcclusion(const DepthView& view) {
     std::erase_if(points_, [&](const FollowedPoint& point) {
-      const bool occluded = !point.other_surface && point.last_visible < view.t &&
-                            reprojection_.IsOccluded(point.position_world, view);
+      const bool occluded =
+          !point.other_surface && point.last_visible < view.t && reprojection_.IsOccluded(point.position_world, view);
       if (occluded) End(point, point.last_visible);
       return occluded;
     });

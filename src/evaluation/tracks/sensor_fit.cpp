@@ -8,7 +8,7 @@ namespace evo::evaluation {
 
 namespace {
 
-constexpr double kBorderPx = 1.0;  // trackers may place a feature slightly outside the border
+constexpr double kBorderPx = 1.0;        // trackers may place a feature slightly outside the border
 constexpr double kMaxMisfitRatio = 0.2;  // a poor tracker's features leave the sensor too
 
 }  // namespace

@@ -17,10 +17,10 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kWholeTracks = std::numeric_limits<double>::infinity();
-constexpr int kMaxThresholdPx = 31;  // of the expected feature age in [2]
+constexpr int kMaxThresholdPx = 31;       // of the expected feature age in [2]
 constexpr std::size_t kMinPositions = 2;  // one has no age
-constexpr int kMaxBins = 40;  // that a plot can show
-constexpr double kBinRounding = 1e-6;  // in bins; an age on a bin's edge belongs to the next bin despite rounding
+constexpr int kMaxBins = 40;              // that a plot can show
+constexpr double kBinRounding = 1e-6;     // in bins; an age on a bin's edge belongs to the next bin despite rounding
 
 /// The part of a track within its feature age.
 struct StablePart {

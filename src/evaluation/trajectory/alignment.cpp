@@ -50,9 +50,10 @@ Alignment ParseAlignment(const std::string& text) {
     const bool may_span = method->second != Method::kNone && method->second != Method::kOrigin;
     if (colon == meant.size() || (may_span && ParseSpan(meant.substr(colon), &alignment))) return alignment;
   }
-  throw Error(ErrorKind::kUsage, "alignment '" + text +
-                                     "' is unknown; choose among none, origin, origin-scale, scale, posyaw, se3 and "
-                                     "sim3, the last five also with a span such as sim3:100 (first poses) or sim3:5s (first seconds)");
+  throw Error(ErrorKind::kUsage,
+              "alignment '" + text +
+                  "' is unknown; choose among none, origin, origin-scale, scale, posyaw, se3 and "
+                  "sim3, the last five also with a span such as sim3:100 (first poses) or sim3:5s (first seconds)");
 }
 
 std::vector<Alignment> ParseAlignments(const std::string& text) {
@@ -62,7 +63,8 @@ std::vector<Alignment> ParseAlignments(const std::string& text) {
     const Alignment alignment = ParseAlignment(name);
     if (std::ranges::find(alignments, name, &Alignment::name) == alignments.end()) alignments.push_back(alignment);
   }
-  if (alignments.empty()) throw Error(ErrorKind::kUsage, "the list of alignments is empty; give for example origin-scale,sim3");
+  if (alignments.empty())
+    throw Error(ErrorKind::kUsage, "the list of alignments is empty; give for example origin-scale,sim3");
   return alignments;
 }
 

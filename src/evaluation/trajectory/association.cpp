@@ -44,14 +44,15 @@ std::vector<PosePair> PairWithNearest(const geometry::Trajectory& truth, const g
   return pairs;
 }
 
-/// The stamps of both trajectories in one linked list in order of time. The nearest two stamps of different trajectories
-/// are always neighbours in it, so after their removal only their own neighbours become a new candidate.
+/// The stamps of both trajectories in one linked list in order of time. The nearest two stamps of different
+/// trajectories are always neighbours in it, so after their removal only their own neighbours become a new candidate.
 class StampList {
  public:
   StampList(const geometry::Trajectory& truth, const geometry::Trajectory& estimate, TimeNs offset) {
     for (const auto& pose : truth) entries_.push_back({pose.t, true, &pose, 0, 0});
     for (const auto& pose : estimate) entries_.push_back({pose.t + offset, false, &pose, 0, 0});
-    std::ranges::sort(entries_.begin() + 1, entries_.end(), {}, [](const Entry& e) { return std::pair(e.t, !e.is_truth); });
+    std::ranges::sort(entries_.begin() + 1, entries_.end(), {},
+                      [](const Entry& e) { return std::pair(e.t, !e.is_truth); });
     entries_.push_back({});
     for (std::size_t i = 0; i < entries_.size(); ++i) {
       entries_[i].before = i - 1;  // the first entry's is never read
@@ -74,7 +75,8 @@ class StampList {
       const auto [difference, t_truth, t_estimate, i, j] = candidates.top();
       candidates.pop();
       if (entries_[i].after != j || entries_[j].before != i) continue;  // one of them is already paired
-      pairs.push_back(entries_[i].is_truth ? Pair(*entries_[i].pose, *entries_[j].pose) : Pair(*entries_[j].pose, *entries_[i].pose));
+      pairs.push_back(entries_[i].is_truth ? Pair(*entries_[i].pose, *entries_[j].pose)
+                                           : Pair(*entries_[j].pose, *entries_[i].pose));
       const auto [before, after] = Remove(i, j);
       propose(before, after);
     }

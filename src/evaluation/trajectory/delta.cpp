@@ -29,8 +29,8 @@ Delta ParseDelta(const std::string& text) {
     delta.unit = unit->second;
     delta.name = text;
     const double max = delta.unit == DeltaUnit::kDegrees   ? 180.0
-                           : delta.unit == DeltaUnit::kRadians ? std::numbers::pi
-                                                               : 1e6;
+                       : delta.unit == DeltaUnit::kRadians ? std::numbers::pi
+                                                           : 1e6;
     const bool whole = delta.unit != DeltaUnit::kFrames || delta.value == std::floor(delta.value);
     if (delta.value > 0.0 && delta.value <= max && whole) return delta;
   }
@@ -52,7 +52,8 @@ std::vector<Delta> ParseDeltas(const std::string& text) {
     const Delta delta = ParseDelta(name);
     if (std::ranges::find(deltas, name, &Delta::name) == deltas.end()) deltas.push_back(delta);
   }
-  if (deltas.empty()) throw Error(ErrorKind::kUsage, "the list of distances between poses is empty; give for example 1f,1s,10m");
+  if (deltas.empty())
+    throw Error(ErrorKind::kUsage, "the list of distances between poses is empty; give for example 1f,1s,10m");
   return deltas;
 }
 

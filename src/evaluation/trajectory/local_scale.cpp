@@ -60,7 +60,8 @@ class Window {
   std::size_t last() const { return last_; }
   double length() const { return trajectory_.distance[last_ - 1] - trajectory_.distance[first_]; }
   double ratio() const {
-    return estimate_.sum_of_squares() > 0.0 ? std::sqrt(truth_.sum_of_squares() / estimate_.sum_of_squares()) : kUndetermined;
+    return estimate_.sum_of_squares() > 0.0 ? std::sqrt(truth_.sum_of_squares() / estimate_.sum_of_squares())
+                                            : kUndetermined;
   }
 
  private:

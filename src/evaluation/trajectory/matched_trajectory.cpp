@@ -49,13 +49,15 @@ std::vector<double> ParseLengths(const std::string& text, double path_m) {
     const std::string_view unit(last, end);
     if (failure != std::errc() || !std::isfinite(length) || length <= 0.0 ||
         (!unit.empty() && unit != "m" && unit != "%")) {
-      throw Error(ErrorKind::kConfiguration,
-                  "'" + item + "' is not a length; give positive metres or percent of the path, for example 100,50m,10%");
+      throw Error(
+          ErrorKind::kConfiguration,
+          "'" + item + "' is not a length; give positive metres or percent of the path, for example 100,50m,10%");
     }
     if (unit == "%") length *= path_m / 100.0;
     if (length > 0.0 && std::ranges::find(lengths, length) == lengths.end()) lengths.push_back(length);
   }
-  if (text.empty()) throw Error(ErrorKind::kConfiguration, "the list of lengths is empty; give for example 100,50m,10%");
+  if (text.empty())
+    throw Error(ErrorKind::kConfiguration, "the list of lengths is empty; give for example 100,50m,10%");
   return lengths;
 }
 

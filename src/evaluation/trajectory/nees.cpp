@@ -12,7 +12,8 @@ constexpr double kZeroVariance = 1e-24;  // trace of a covariance that is zero b
 
 /// e^T C^-1 e / n.
 template <int kRows>
-double NormalizedSquaredError(const Eigen::Matrix<double, kRows, 1>& error, const Eigen::Matrix<double, kRows, kRows>& covariance) {
+double NormalizedSquaredError(const Eigen::Matrix<double, kRows, 1>& error,
+                              const Eigen::Matrix<double, kRows, kRows>& covariance) {
   return error.dot(covariance.ldlt().solve(error)) / kRows;
 }
 
@@ -28,7 +29,8 @@ struct NormalizedErrors {
 };
 
 /// Appends the errors of poses whose covariances are relative to `origin`.
-void Append(std::span<const PairWithCovariance> poses, const PairWithCovariance& origin, bool fit_scale, NormalizedErrors* errors) {
+void Append(std::span<const PairWithCovariance> poses, const PairWithCovariance& origin, bool fit_scale,
+            NormalizedErrors* errors) {
   // The covariances are given in the axes of the estimate's world frame.
   const geometry::SE3 T_estimate_truth = origin.pair.T_world_cam_estimate * origin.pair.T_world_cam_truth.Inverse();
   const Eigen::Vector3d p_origin = origin.pair.T_world_cam_estimate.translation();
@@ -64,7 +66,8 @@ Nees ComputeNees(std::span<const PosePair> pairs, std::span<const geometry::Stam
   NormalizedErrors errors;
   auto origin = std::ranges::find_if(known, &PairWithCovariance::is_origin);
   for (auto begin = known.begin(); origin != known.end(); begin = origin) {
-    const auto next = std::find_if(origin + 1, known.end(), [](const PairWithCovariance& pose) { return pose.is_origin(); });
+    const auto next =
+        std::find_if(origin + 1, known.end(), [](const PairWithCovariance& pose) { return pose.is_origin(); });
     Append({begin, next}, *origin, fit_scale, &errors);
     origin = next;
   }

@@ -51,7 +51,8 @@ IndexPair Pair(std::size_t first, std::size_t second) {
   return {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(second)};
 }
 
-/// Index of the entry after `i` that is nearest to `delta` ahead, the first of several; there must be entries after `i`.
+/// Index of the entry after `i` that is nearest to `delta` ahead, the first of several; there must be entries after
+/// `i`.
 std::size_t NearestAfter(std::span<const double> cumulative, std::size_t i, double delta) {
   const auto ahead = [&](double value) { return value - cumulative[i]; };
   const auto later = cumulative.subspan(i + 1);

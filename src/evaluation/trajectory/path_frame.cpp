@@ -24,8 +24,12 @@ Eigen::Vector3d UpDirection(const std::string& up, const geometry::Trajectory& t
 }
 
 PathFrame::PathFrame(const geometry::Trajectory& truth, const Eigen::Vector3d& up, const std::string& forward,
-                           double chord)
-    : truth_(truth), up_(up), along_body_(forward == "body"), half_chord_(0.5 * chord), ground_positions_(GroundPositions()) {
+                     double chord)
+    : truth_(truth),
+      up_(up),
+      along_body_(forward == "body"),
+      half_chord_(0.5 * chord),
+      ground_positions_(GroundPositions()) {
   heading_ = ProjectToGround(truth.front().T_world_cam.rotation() * Eigen::Vector3d::UnitZ());
   // A camera that looks straight up or down and never moves has no heading.
   heading_ = heading_.norm() > kMinNorm ? heading_.normalized() : up.unitOrthogonal();

@@ -61,7 +61,7 @@ ErrorSummary Summarize(std::span<const PoseError> errors, double PositionError::
     if (error.distance >= kMinDistance) ratios.push_back(magnitudes.back() / error.distance);
   }
   const Statistics statistics = ComputeStatistics(magnitudes);
-  return {statistics.mean, statistics.rmse, statistics.max, errors.back().driving.*component,
+  return {statistics.mean, statistics.rmse, statistics.max, errors.back().position.*component,
           ComputeStatistics(ratios).mean};
 }
 

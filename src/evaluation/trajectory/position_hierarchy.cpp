@@ -31,7 +31,7 @@ PositionHierarchy::PositionHierarchy(std::vector<Eigen::Vector3d> positions) : p
 }
 
 bool PositionHierarchy::MayLeave(std::size_t level, std::size_t node, const Eigen::Vector3d& center,
-                              double radius) const {
+                                 double radius) const {
   if (level == 0) return (positions_[node] - center).norm() >= radius;
   const auto& [box, box_radius] = levels_[level][node];
   if ((box.center() - center).norm() + box_radius < (1.0 - kRounding) * radius) return false;
@@ -40,7 +40,7 @@ bool PositionHierarchy::MayLeave(std::size_t level, std::size_t node, const Eige
 }
 
 std::optional<std::size_t> PositionHierarchy::FirstOutside(std::size_t from, const Eigen::Vector3d& center,
-                                                    double radius) const {
+                                                           double radius) const {
   std::size_t level = 0;
   std::size_t node = from;
   while (node < levels_[level].size()) {
@@ -57,7 +57,7 @@ std::optional<std::size_t> PositionHierarchy::FirstOutside(std::size_t from, con
 }
 
 std::optional<std::size_t> PositionHierarchy::LastOutside(std::size_t from, const Eigen::Vector3d& center,
-                                                   double radius) const {
+                                                          double radius) const {
   std::size_t level = 0;
   std::size_t end = from + 1;  // one past the node looked at
   while (end > 0) {

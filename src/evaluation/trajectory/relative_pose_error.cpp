@@ -11,10 +11,8 @@
 #include "evaluation/trajectory/pose_differences.hpp"
 #include "evo/core/error.hpp"
 
-pair_indexpace evo::evaluation {
-
-pair_indexpace {
-
+namespace evo::evaluation {
+namespace {
 PoseDifferences RelativeDifferences(std::span<const PosePair> pairs, std::span<const IndexPair> motions) {
   PoseDifferences differences;
   for (const auto& [i, j] : motions) {
@@ -40,7 +38,7 @@ geometry::Trajectory MatchedPoses(std::span<const PosePair> pairs, bool of_truth
 
 /// Converts motions between poses of `estimate` to indices of `pairs` and drops unmatched ones.
 std::vector<IndexPair> ToPairIndices(std::span<const IndexPair> motions, const geometry::Trajectory& estimate,
-                              std::span<const PosePair> pairs) {
+                                     std::span<const PosePair> pairs) {
   constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> pair_index(estimate.size(), kNone);
   for (std::size_t k = 0; k < pairs.size(); ++k) {
@@ -54,7 +52,7 @@ std::vector<IndexPair> ToPairIndices(std::span<const IndexPair> motions, const g
   return matched;
 }
 
-}  // pair_indexpace
+}  // namespace
 
 std::vector<RelativePoseError> ComputeRelativePoseErrors(std::span<const PosePair> pairs,
                                                          const geometry::Trajectory& estimate, bool has_stamps,
@@ -82,4 +80,4 @@ std::vector<RelativePoseError> ComputeRelativePoseErrors(std::span<const PosePai
   return results;
 }
 
-}  // pair_indexpace evo::evaluation
+}  // namespace evo::evaluation

@@ -61,7 +61,8 @@ Statistics Scale(Statistics statistics, double factor) {
 
 }  // namespace
 
-std::vector<SubTrajectoryErrors> ComputeSubTrajectoryErrors(const MatchedTrajectory& trajectory, std::span<const double> lengths_m,
+std::vector<SubTrajectoryErrors> ComputeSubTrajectoryErrors(const MatchedTrajectory& trajectory,
+                                                            std::span<const double> lengths_m,
                                                             const Eigen::Vector3d& up) {
   const auto to_z = Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ());
   std::vector<SubTrajectoryErrors> results;
