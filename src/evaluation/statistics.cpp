@@ -9,8 +9,8 @@ namespace evo::evaluation {
 
 Statistics ComputeStatistics(std::span<const double> errors) {
   if (errors.empty()) {
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-    return {0, kNone, kNone, kNone, kNone, kNone, kNone, kNone};
+    constexpr double kUndetermined = std::numeric_limits<double>::quiet_NaN();
+    return {0, kUndetermined, kUndetermined, kUndetermined, kUndetermined, kUndetermined, kUndetermined, kUndetermined};
   }
   const auto n = static_cast<double>(errors.size());
   Statistics statistics;

@@ -61,10 +61,10 @@ std::int64_t BinWidth(std::int64_t span) {
 
 std::vector<LifetimeBin> ComputeHistogram(const Counted<int>& frames) {
   if (frames.empty()) return {};
-  const int longest = frames.rbegin()->first;
-  const int width = static_cast<int>(BinWidth(longest - kMinLifetimeFrames + 1));
+  const int max_lifetime = frames.rbegin()->first;
+  const int width = static_cast<int>(BinWidth(max_lifetime - kMinLifetimeFrames + 1));
   std::vector<LifetimeBin> histogram;
-  for (int low = kMinLifetimeFrames; low <= longest; low += width) histogram.push_back({low, low + width, 0});
+  for (int low = kMinLifetimeFrames; low <= max_lifetime; low += width) histogram.push_back({low, low + width, 0});
   for (const auto& [lifetime, tracks] : frames) {
     histogram[static_cast<std::size_t>((lifetime - kMinLifetimeFrames) / width)].tracks += tracks;
   }
@@ -83,10 +83,11 @@ TimeNs MedianInterval(std::span<const TimeNs> stamps) {
 std::vector<LifetimeSecondsBin> ComputeSecondsHistogram(const Counted<TimeNs>& durations, TimeNs interval) {
   if (durations.empty()) return {};
   const TimeNs unit = std::max<TimeNs>(1, interval);
-  const TimeNs longest = durations.rbegin()->first;
-  const TimeNs width = unit * BinWidth(longest / unit + 1);
+  const TimeNs max_lifetime = durations.rbegin()->first;
+  const TimeNs width = unit * BinWidth(max_lifetime / unit + 1);
   std::vector<LifetimeSecondsBin> histogram;
-  for (TimeNs low = 0; low <= longest; low += width) histogram.push_back({ToSeconds(low), ToSeconds(low + width), 0});
+  for (TimeNs low = 0; low <= max_lifetime; low += width)
+    histogram.push_back({ToSeconds(low), ToSeconds(low + width), 0});
   for (const auto& [duration, tracks] : durations)
     histogram[static_cast<std::size_t>(duration / width)].tracks += tracks;
   return histogram;

@@ -15,7 +15,7 @@ namespace evo::evaluation {
 
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUndetermined = std::numeric_limits<double>::quiet_NaN();
 constexpr double kWholeTracks = std::numeric_limits<double>::infinity();
 constexpr int kMaxThresholdPx = 31;       // of the expected feature age in [2]
 constexpr std::size_t kMinPositions = 2;  // one has no age
@@ -36,7 +36,7 @@ StablePart FindStablePart(const TrackErrors& track, double threshold_px) {
 
 /// Linear between order statistics (numpy's default); `sorted` ascending.
 double Quantile(const std::vector<double>& sorted, double probability) {
-  if (sorted.empty()) return kNone;
+  if (sorted.empty()) return kUndetermined;
   const double rank = probability * static_cast<double>(sorted.size() - 1);
   const auto below = static_cast<std::size_t>(rank);
   const std::size_t above = std::min(below + 1, sorted.size() - 1);

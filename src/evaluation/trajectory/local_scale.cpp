@@ -8,6 +8,8 @@ namespace evo::evaluation {
 
 namespace {
 
+constexpr double kMinWindowsPerPath = 5.0;  // so that drift along a short path is visible
+constexpr double kMinWindowRatio = 0.25;    // of a full window; noise dominates in a shorter one
 constexpr double kUndetermined = std::numeric_limits<double>::quiet_NaN();
 
 /// Sum of squared distances of a sliding set of points from their centroid (B. P. Welford, Technometrics 1962), which
@@ -89,7 +91,7 @@ std::vector<ScaleSample> ComputeLocalScale(const MatchedTrajectory& trajectory, 
   if (trajectory.size() == 0) return samples;
   const auto& distance = trajectory.distance;
   const auto piece_ends = FindPieceEnds(trajectory.t, max_gap);
-  const double window_m = std::min(segment_m, distance.back() / 5.0);
+  const double window_m = std::min(segment_m, distance.back() / kMinWindowsPerPath);
   Window window(trajectory);
   std::size_t piece = 0;  // first pose of the current piece
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
@@ -99,7 +101,7 @@ std::vector<ScaleSample> ComputeLocalScale(const MatchedTrajectory& trajectory, 
     while (distance[first] < distance[i] - 0.5 * window_m) ++first;
     while (last < piece_ends[i] && distance[last] <= distance[i] + 0.5 * window_m) ++last;
     window.MoveTo(first, last);
-    const bool determined = window_m > 0.0 && window.length() >= 0.25 * window_m;
+    const bool determined = window_m > 0.0 && window.length() >= kMinWindowRatio * window_m;
     samples.push_back({ToSeconds(trajectory.t[i] - from), distance[i], determined ? window.ratio() : kUndetermined});
   }
   return samples;

@@ -26,7 +26,10 @@ std::string FormatNumber(double value) { return fmt::format("{:.10g}", value == 
 
 std::string DataRow(std::initializer_list<double> values) {
   std::string row;
-  for (const double value : values) row += (row.empty() ? "" : " ") + FormatNumber(value);
+  for (const double value : values) {
+    if (!row.empty()) row += ' ';
+    row += FormatNumber(value);
+  }
   return row + '\n';
 }
 

@@ -1,23 +1,23 @@
 #pragma once
 
 #include <limits>
-#include <string>
+#include <string_view>
 
 #include "evo/evaluation/statistics.hpp"
 #include "evo/report/tables.hpp"
 
 namespace evo::report {
 
-/// The columns of metrics.csv that say what its statistics are of.
+/// The columns of metrics.csv that identify its statistics.
 struct MetricKey {
-  std::string sequence;
-  std::string alignment;
-  std::string metric;    ///< "ape", "rpe", "kitti", "subtrajectory"
-  std::string quantity;  ///< "translation", "rotation", ...
-  std::string unit;
+  std::string_view sequence = {};
+  std::string_view alignment = {};
+  std::string_view metric = {};    ///< "ape", "rpe", "kitti", "subtrajectory"
+  std::string_view quantity = {};  ///< "translation", "rotation", ...
+  std::string_view unit = {};
   double delta = std::numeric_limits<double>::quiet_NaN();  ///< distance between poses; NaN is an empty cell
-  std::string delta_unit = {};
-  std::string pairs = {};  ///< rule that selected the pairs of poses
+  std::string_view delta_unit = {};
+  std::string_view pairs = {};  ///< rule that selected the pairs of poses
 };
 
 /// One row of metrics.csv: `sequence,alignment,metric,quantity,unit,delta,delta_unit,pairs,count`, then

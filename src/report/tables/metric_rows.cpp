@@ -5,14 +5,14 @@
 namespace evo::report {
 
 TableRow MetricRow(const MetricKey& key, const evaluation::Statistics& statistics) {
-  return {{"sequence", key.sequence},
-          {"alignment", key.alignment},
-          {"metric", key.metric},
-          {"quantity", key.quantity},
-          {"unit", key.unit},
+  return {{"sequence", std::string(key.sequence)},
+          {"alignment", std::string(key.alignment)},
+          {"metric", std::string(key.metric)},
+          {"quantity", std::string(key.quantity)},
+          {"unit", std::string(key.unit)},
           {"delta", key.delta},
-          {"delta_unit", key.delta_unit},
-          {"pairs", key.pairs},
+          {"delta_unit", std::string(key.delta_unit)},
+          {"pairs", std::string(key.pairs)},
           {"count", statistics.count},
           {"rmse", statistics.rmse},
           {"mean", statistics.mean},

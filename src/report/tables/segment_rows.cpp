@@ -10,7 +10,8 @@ void AppendKitti(std::vector<TableRow>* rows, MetricKey key, const evaluation::K
   if (kitti.lengths.empty()) return;
   key.metric = "kitti";
   key.delta_unit = "m";
-  key.pairs = "every " + std::to_string(kitti.step);
+  const std::string starts = "every " + std::to_string(kitti.step);
+  key.pairs = starts;
   const auto append = [&](const char* quantity, const char* unit, const evaluation::Statistics& statistics) {
     key.quantity = quantity;
     key.unit = unit;
