@@ -12,6 +12,7 @@
 #include "evo/report/manifest.hpp"
 #include "evo/report/terminal_summary.hpp"
 #include "report/fixtures.hpp"
+#include "report/tables/metric_row.hpp"
 
 namespace evo::report {
 namespace {
@@ -82,7 +83,15 @@ TEST_F(TablesTest, MetricsHaveAllDigits) {
   for (; std::getline(lines, line); ++rows) EXPECT_EQ(std::ranges::count(line, ','), 15) << line;
   EXPECT_EQ(rows, 2 * (5 + 3 * 7 + 5 * 6));
   const evaluation::Statistics third{1, 1.0 / 3.0, 1e-20, 0.0, 0.0, 0.0, 0.0, 0.0};
-  WriteCsv(folder / "one.csv", {MetricRow("a", "b", "c", "d", "m", 0.1, "s", "all", third)}, Digits::kAll);
+  const MetricKey key{.sequence = "a",
+                      .alignment = "b",
+                      .metric = "c",
+                      .quantity = "d",
+                      .unit = "m",
+                      .delta = 0.1,
+                      .delta_unit = "s",
+                      .pairs = "all"};
+  WriteCsv(folder / "one.csv", {MetricRow(key, third)}, Digits::kAll);
   EXPECT_NE(ReadFile(folder / "one.csv").find("\na,b,c,d,m,0.1,s,all,1,0.3333333333333333,1e-20,0,0,0,0,0\n"),
             std::string::npos);
 }
