@@ -76,7 +76,7 @@ TEST_F(RunFolderTest, OtherFoldersAreRefused) {
   EXPECT_NE(Refusal({folder / "absent"}).find("absent: no such folder"), std::string::npos);
   EXPECT_NE(Refusal({Write("file", "x")}).find("file: no such folder"), std::string::npos);
   Write("other/readme.txt", "x");
-  EXPECT_NE(Refusal({folder / "other"}).find("other: no manifest.json"), std::string::npos);
+  EXPECT_NE(Refusal({folder / "other"}).find("other: holds no manifest.json"), std::string::npos);
 }
 
 TEST_F(RunFolderTest, CorruptFilesAreRefusedWithFileAndLine) {
