@@ -33,9 +33,14 @@ std::string DataRow(std::initializer_list<double> values) {
   return row + '\n';
 }
 
-std::string BeginFigure(const std::string& title) {
-  return fmt::format("{}set title '{}' font ',16'\nset key outside top center horizontal maxrows 1 samplen 2.5\n",
-                     kStyle, title);
+std::string BeginFigure(const std::string& title, int height) {
+  // `set title` would place the title below the legend.
+  const auto from_top = [&](double px) { return FormatNumber(1.0 - px / height); };
+  return fmt::format(
+      "{}set label 3 '{}' at screen 0.5, screen {} center font ',16'\n"
+      "set key at screen 0.5, screen {} center top horizontal maxrows 1 samplen 2.5\n"
+      "set tmargin at screen {}\n",
+      kStyle, title, from_top(18.0), from_top(34.0), from_top(70.0));
 }
 
 std::string PlotElements(const Curve& curve) {

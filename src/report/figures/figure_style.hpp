@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "evo/evaluation/evaluation.hpp"
+#include "evo/report/gnuplot.hpp"
 
 namespace evo::report {
 
@@ -26,8 +27,8 @@ std::string FormatNumber(double value);
 /// A row of a data file.
 std::string DataRow(std::initializer_list<double> values);
 
-/// Style, title and legend of a figure with one panel.
-std::string BeginFigure(const std::string& title);
+/// Style, title and legend of a figure with one panel; `height` is that of the figure (px).
+std::string BeginFigure(const std::string& title, int height = Figure().height);
 
 /// A curve that is interrupted at empty lines of the data file. Of many rows only a few thousand are drawn. Each piece
 /// starts with a dot, so that a single row between two gaps is visible.

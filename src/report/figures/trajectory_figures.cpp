@@ -80,7 +80,7 @@ Figure TrajectoryFigure(const std::string& name, const evaluation::Evaluation& e
   figure.height = static_cast<int>(std::lround(std::clamp(760.0 * away.length() / right.length(), 340.0, 900.0))) + 140;
   const char* const names = "xyz";
   const std::string columns = fmt::format("{}:{}", axes.right + 2, axes.away + 2);
-  figure.script = BeginFigure(fmt::format("Trajectory, top view ({} alignment)", result.alignment.name));
+  figure.script = BeginFigure(fmt::format("Trajectory, top view ({} alignment)", result.alignment.name), figure.height);
   figure.script += fmt::format(
       "set size ratio -1\n"
       "set xrange {}\n"
