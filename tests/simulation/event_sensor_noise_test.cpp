@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "evo/simulation/event_sensor.hpp"
+#include "simulation/sensor/event_sensor.hpp"
 #include "simulation/sensor_stimulus.hpp"
 
 // Noise against its expectations, and the sensor as it comes.

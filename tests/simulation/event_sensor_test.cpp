@@ -1,4 +1,4 @@
-#include "evo/simulation/event_sensor.hpp"
+#include "simulation/sensor/event_sensor.hpp"
 
 #include <gtest/gtest.h>
 

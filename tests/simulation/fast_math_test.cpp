@@ -1,4 +1,4 @@
-#include "simulation/render/fast_math.hpp"
+#include "simulation/fast_math.hpp"
 
 #include <gtest/gtest.h>
 

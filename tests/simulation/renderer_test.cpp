@@ -1,4 +1,4 @@
-#include "evo/simulation/renderer.hpp"
+#include "simulation/render/renderer.hpp"
 
 #include <gtest/gtest.h>
 

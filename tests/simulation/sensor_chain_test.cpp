@@ -29,7 +29,7 @@ SimulationOptions Fine() {
   return options;
 }
 
-events::EventColumns EventsOf(const Scene& scene, const geometry::Camera& camera, const CameraMotion& motion,
+events::EventColumns EventsOf(const Scene& scene, const geometry::Camera& camera, const PoseFunction& motion,
                               TimeNs duration, const SensorOptions& sensor, const SimulationOptions& options) {
   ThreadPool pool(2);
   EventsOnly sink;
@@ -51,7 +51,7 @@ class MovingEdge : public ::testing::TestWithParam<std::pair<float, float>> {
     scene.textures = {Plain(left), Plain(right)};
     scene.surfaces = {Facing(-9.0, kEdge, -9.0, 9.0, kDepth, 0), Facing(kEdge, 9.0, -9.0, 9.0, kDepth, 1)};
     options.samples = 8;  // an edge that crosses a pixel changes it in 64 steps
-    options.largest_step_px = 0.05;
+    options.max_step_px = 0.05;
   }
 
   /// When the edge has so far crossed pixel column x, of which `share` shows the right half then, s.
@@ -63,7 +63,7 @@ class MovingEdge : public ::testing::TestWithParam<std::pair<float, float>> {
   Scene scene = Empty();
   const geometry::Camera camera{
       geometry::Calibration{geometry::Distortion::kRadTan, 24, 12, kFocal, kFocal, 8.0, 6.0, {}}};
-  const CameraMotion motion = [](TimeNs t) {
+  const PoseFunction motion = [](TimeNs t) {
     return geometry::SE3(Eigen::Quaterniond::Identity(), {kSpeed * ToSeconds(t), 0.0, 0.0});
   };
   SimulationOptions options = Fine();
@@ -119,7 +119,7 @@ TEST(SensorChain, IntegratedEventsGiveBackTheLogChangeOfTheFrames) {
   }();
   const geometry::Camera camera(
       {geometry::Distortion::kRadTan, 48, 36, 40.0, 40.0, 24.0, 18.0, {-0.2, 0.03, 0.001, -0.001, 0.0}});
-  const CameraMotion motion = [](TimeNs t) {
+  const PoseFunction motion = [](TimeNs t) {
     const double s = ToSeconds(t);
     return geometry::SE3(geometry::so3::Exp({0.6 * s, -s, 0.8 * s}), {0.5 * s, 0.3 * s, 2.0 * s});
   };

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "evo/simulation/event_sensor.hpp"
+#include "simulation/sensor/event_sensor.hpp"
 
 namespace evo::simulation::test {
 

@@ -80,7 +80,7 @@ class SimulateTest : public ::testing::Test {
   Scene scene = MakeWall();
   const geometry::Camera camera{geometry::Calibration{
       geometry::Distortion::kRadTan, 50, 40, 60.0, 60.0, 24.0, 20.0, {-0.1, 0.02, 0.0, 0.0, 0.0}}};
-  CameraMotion motion = [](TimeNs t) {
+  PoseFunction motion = [](TimeNs t) {
     return geometry::SE3(Eigen::Quaterniond::Identity(), {kSpeed * ToSeconds(t), 0.0, 0.0});
   };
   SimulationOptions options;
@@ -132,13 +132,13 @@ TEST_F(SimulateTest, ACameraAtRestSeesNothingButNoise) {
   Record record;
   const SimulationCounts counts = Run(Noiseless(), &record);
   EXPECT_EQ(record.events.size(), 0u);
-  EXPECT_EQ(counts.pixel_renders, 50u * 40u * 20u);  // every longest_step_s
+  EXPECT_EQ(counts.pixel_renders, 50u * 40u * 20u);  // every max_step_s
 }
 
 TEST_F(SimulateTest, RendersAsOftenAsTheMotionNeeds) {
   Record coarse;
   const SimulationCounts counts = Run(Noiseless(), &coarse);
-  options.largest_step_px = 0.125;
+  options.max_step_px = 0.125;
   Record fine;
   const SimulationCounts more = Run(Noiseless(), &fine);
   // 60 px * 0.5 m/s / 2 m = 15 px/s: every 5 ms that is under a tenth of a pixel.
@@ -188,7 +188,7 @@ TEST_F(SimulateTest, FewRendersUnderLampsShowWhatManyDo) {
   sensor.threshold_on = 0.2;
   Record few;
   const SimulationCounts counts = Run(sensor, &few);
-  options.longest_step_s = 1.0 / 960.0;
+  options.max_step_s = 1.0 / 960.0;
   Record many;
   EXPECT_GT(Run(sensor, &many).pixel_renders, 4 * counts.pixel_renders);
   std::map<std::pair<int, int>, std::vector<TimeNs>> stamps;
@@ -236,7 +236,7 @@ TEST_F(SimulateTest, ALeadInIsWhatTheCameraSawBefore) {
   sensor.bandwidth_hz = 30.0;
   Record whole, part;
   Simulate(scene, camera, motion, 0, kLeadIn + kDuration, sensor, options, 3, &pool, nullptr, &whole);
-  const CameraMotion later = [&](TimeNs t) { return motion(t + kLeadIn); };
+  const PoseFunction later = [&](TimeNs t) { return motion(t + kLeadIn); };
   Simulate(scene, camera, later, kLeadIn, kDuration, sensor, options, 3, &pool, nullptr, &part);
   const auto first =
       static_cast<std::size_t>(std::ranges::lower_bound(whole.events.t, kLeadIn) - whole.events.t.begin());

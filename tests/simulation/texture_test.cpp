@@ -1,4 +1,4 @@
-#include "evo/simulation/texture.hpp"
+#include "simulation/world/texture.hpp"
 
 #include <gtest/gtest.h>
 
@@ -80,9 +80,9 @@ TEST(Texture, RefusesOddSizes) {
 }
 
 TEST(Texture, QuickLog2IsCloseAndContinuous) {
-  for (float x = 1e-6F; x < 1e6F; x *= 1.003F) EXPECT_NEAR(QuickLog2(x), std::log2(x), 0.011F);
-  EXPECT_NEAR(QuickLog2(std::nextafter(2.0F, 0.0F)), 1.0F, 1e-5F);
-  EXPECT_NEAR(QuickLog2(2.0F), 1.0F, 1e-6F);
+  for (float x = 1e-6F; x < 1e6F; x *= 1.003F) EXPECT_NEAR(FastLog2(x), std::log2(x), 0.011F);
+  EXPECT_NEAR(FastLog2(std::nextafter(2.0F, 0.0F)), 1.0F, 1e-5F);
+  EXPECT_NEAR(FastLog2(2.0F), 1.0F, 1e-6F);
 }
 
 }  // namespace

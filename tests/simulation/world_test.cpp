@@ -1,4 +1,4 @@
-#include "evo/simulation/world.hpp"
+#include "simulation/world/world.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "evo/core/error.hpp"
 #include "evo/simulation/scene_options.hpp"
-#include "evo/simulation/surface_tree.hpp"
+#include "simulation/render/bounding_volume_hierarchy.hpp"
 
 namespace evo::simulation {
 namespace {
