@@ -10,7 +10,8 @@ namespace evo::simulation {
 namespace {
 
 void Register(Parameters& p, StreetOptions& o) {
-  p.Add("street.road_width_m", &o.road_width_m, 5.0, 20.0, "width of both lanes; the camera drives in the right one (m)");
+  p.Add("street.road_width_m", &o.road_width_m, 5.0, 20.0,
+        "width of both lanes; the camera drives in the right one (m)");
   p.Add("street.parking_width_m", &o.parking_width_m, 0.0, 5.0, "width of the parking strip on each side (m)");
   p.Add("street.pavement_width_m", &o.pavement_width_m, 1.0, 10.0, "width of the pavement on each side (m)");
   p.Add("street.house_share", &o.house_share, 0.0, 1.0, "ratio of the road's length lined with houses");
@@ -24,7 +25,8 @@ void Register(Parameters& p, StreetOptions& o) {
         "cars ahead in the camera's lane that drive as it does; motion.kind vehicle only");
   p.Add("street.light", &o.light, {"day", "night"}, "night: street lamps, head lamps and lit windows");
   p.Add("street.night_ambient", &o.night_ambient, 0.0, 1.0, "ambient light at night over that of the day");
-  p.Add("street.head_lamps", &o.head_lamps, 0.0, 1000.0, "radiance of a white surface 1 m ahead of the camera at night");
+  p.Add("street.head_lamps", &o.head_lamps, 0.0, 1000.0,
+        "radiance of a white surface 1 m ahead of the camera at night");
   p.Add("street.lamp_flicker_hz", &o.lamp_flicker_hz, 0.0, 1000.0, "flicker frequency of the street lamps (Hz)");
 }
 
@@ -38,7 +40,8 @@ void Register(Parameters& p, VehicleOptions& o) {
   add("acceleration_m_s2", &o.acceleration_m_s2, 0.1, 8.0, "maximum acceleration and deceleration (m/s^2)");
   add("stop_every_s", &o.stop_every_s, 0.0, 3600.0, "period at which the car brakes to a stop (s); 0: never");
   add("stand_s", &o.stand_s, 0.0, 3600.0, "length of a stop (s)");
-  add("start_at_rest_s", &o.start_at_rest_s, 0.0, 3600.0, "length of the stand at the start (s); 0: starts at full speed");
+  add("start_at_rest_s", &o.start_at_rest_s, 0.0, 3600.0,
+      "length of the stand at the start (s); 0: starts at full speed");
   add("turn_speed_m_s", &o.turn_speed_m_s, 0.5, 40.0,
       "speed in right-angle turns; wider bends have the same lateral acceleration (m/s)");
   add("camera_height_m", &o.camera_height_m, 0.2, 5.0, "height of the camera above the road (m)");

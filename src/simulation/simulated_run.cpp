@@ -19,8 +19,9 @@ namespace evo::simulation {
 
 namespace {
 
-constexpr double kViewDistance = 250.0;  // m of road beyond the end of the drive: the camera never sees the street's end
-constexpr double kMaxPixels = 4e6;       // four times the largest event camera, at some 150 bytes a pixel
+constexpr double kViewDistance =
+    250.0;                          // m of road beyond the end of the drive: the camera never sees the street's end
+constexpr double kMaxPixels = 4e6;  // four times the largest event camera, at some 150 bytes a pixel
 
 geometry::Calibration FindCalibration(const std::string& name) {
   if (name == "davis346") return geometry::MvsecDavis346();
@@ -78,8 +79,7 @@ SimulatedRun MakeDrive(const SceneOptions& options, const geometry::Camera& came
   }
   const ReferenceLine road = MakeRoad(options, options.vehicle.duration_s * options.vehicle.speed_m_s);
   const VehicleMotion motion = MakeVehicleMotion(road, options.vehicle, Seed(options));
-  Scene street =
-      MakeStreet(road, options.street, options.vehicle.camera_height_m, Seed(options), motion.distance_m);
+  Scene street = MakeStreet(road, options.street, options.vehicle.camera_height_m, Seed(options), motion.distance_m);
   return {std::make_shared<const Scene>(std::move(street)), camera, motion.T_world_cam,
           FromSeconds(options.vehicle.duration_s)};
 }
@@ -102,8 +102,8 @@ SimulatedRun MakeRun(const SceneOptions& options) {
 
 SimulatedRun PartOf(const SimulatedRun& run, TimeNs from, TimeNs duration) {
   if (from < 0 || duration <= 0 || from + duration > run.duration) {
-    throw Error(ErrorKind::kUsage, fmt::format("the part lies outside of the motion, which ends after {} s",
-                                               FormatTime(run.duration)));
+    throw Error(ErrorKind::kUsage,
+                fmt::format("the part lies outside of the motion, which ends after {} s", FormatTime(run.duration)));
   }
   const auto shifted = [from](const PoseFunction& pose) -> PoseFunction {
     return [pose, from](TimeNs t) { return pose(t + from); };

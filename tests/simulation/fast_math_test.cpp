@@ -19,6 +19,12 @@ TEST(FastMath, LogIsThatOfTheLibrary) {
   EXPECT_NEAR(FastLog(3e38F), std::log(3e38), 1e-5);
 }
 
+TEST(FastMath, Log2IsCloseAndContinuous) {
+  for (float x = 1e-6F; x < 1e6F; x *= 1.003F) EXPECT_NEAR(FastLog2(x), std::log2(x), 0.011F);
+  EXPECT_NEAR(FastLog2(std::nextafter(2.0F, 0.0F)), 1.0F, 1e-5F);
+  EXPECT_NEAR(FastLog2(2.0F), 1.0F, 1e-6F);
+}
+
 TEST(FastMath, OneMinusExpIsThatOfTheLibrary) {
   EXPECT_EQ(FastOneMinusExp(0.0F), 0.0F);
   for (float x = 1e-30F; x < 100.0F; x *= 1.0003F) {

@@ -71,12 +71,12 @@ inline Renderer::VisibleSet All(const Scene& scene) {
   return all;
 }
 
-inline Tile WholeTexture(const geometry::Camera& camera) { return {0, 0, camera.width(), camera.height()}; }
+inline Tile WholeImage(const geometry::Camera& camera) { return {0, 0, camera.width(), camera.height()}; }
 
 inline std::vector<float> RenderAll(const Scene& scene, const geometry::Camera& camera, int samples, TimeNs t = 0,
                                     const geometry::SE3& T_world_cam = geometry::SE3()) {
   Renderer::Radiance radiance;
-  Renderer(scene, camera, samples).Render(WholeTexture(camera), All(scene), t, T_world_cam, &radiance);
+  Renderer(scene, camera, samples).Render(WholeImage(camera), All(scene), t, T_world_cam, &radiance);
   std::vector<float> image = radiance.steady;
   const double flicker = Flicker(scene.lighting, t);
   for (std::size_t i = 0; i < image.size(); ++i) image[i] += static_cast<float>(flicker) * radiance.lamps[i];
@@ -87,7 +87,7 @@ inline std::vector<float> DepthOfAll(const Scene& scene, const geometry::Camera&
                                      const geometry::SE3& T_world_cam = geometry::SE3()) {
   std::vector<float> image(static_cast<std::size_t>(camera.width()) * static_cast<std::size_t>(camera.height()));
   std::vector<std::uint8_t> moving(image.size());
-  Renderer(scene, camera, 1).Depth(WholeTexture(camera), All(scene), t, T_world_cam, image, moving);
+  Renderer(scene, camera, 1).RenderDepth(WholeImage(camera), All(scene), t, T_world_cam, image, moving);
   return image;
 }
 

@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
+#include "evo/core/parallel.hpp"
+#include "evo/core/random.hpp"
 #include "evo/simulation/simulate.hpp"
 #include "simulation/render_scene.hpp"
 #include "simulation/sensor_stimulus.hpp"
@@ -29,11 +32,14 @@ SimulationOptions Fine() {
   return options;
 }
 
-events::EventColumns EventsOf(const Scene& scene, const geometry::Camera& camera, const PoseFunction& motion,
-                              TimeNs duration, const SensorOptions& sensor, const SimulationOptions& options) {
+events::EventColumns SimulateEvents(const SimulatedRun& run, const SensorOptions& sensor,
+                                    const SimulationOptions& simulation) {
+  SceneOptions options;
+  options.sensor = sensor;
+  options.simulation = simulation;
   ThreadPool pool(2);
   EventsOnly sink;
-  Simulate(scene, camera, motion, 0, duration, sensor, options, 1, &pool, nullptr, &sink);
+  Simulate(run, options, &pool, &sink);
   return sink.events;
 }
 
@@ -77,7 +83,8 @@ TEST_P(MovingEdge, FiresAtTheTimesAndAsOftenAsTheClosedFormSays) {
   const double change = std::log(after + sensor.dark_radiance) - low;
   const int sign = change > 0.0 ? 1 : -1;
   const double threshold = change > 0.0 ? sensor.threshold_on : sensor.threshold_off;
-  const auto pixels = ByPixel(EventsOf(scene, camera, motion, FromSeconds(0.8), sensor, options));
+  const auto pixels =
+      ByPixel(SimulateEvents({std::make_shared<Scene>(scene), camera, motion, FromSeconds(0.8)}, sensor, options));
   const int count = static_cast<int>(std::abs(change) / threshold);
   ASSERT_GE(count, 3);
   for (int x = 0; x <= 20; ++x) {  // the columns that the edge crosses whole
@@ -125,7 +132,8 @@ TEST(SensorChain, IntegratedEventsGiveBackTheLogChangeOfTheFrames) {
   };
   const TimeNs duration = FromSeconds(0.25);
   const SensorOptions sensor = IdealSensor(0.11, 0.07);
-  const events::EventColumns events = EventsOf(scene, camera, motion, duration, sensor, Fine());
+  const events::EventColumns events =
+      SimulateEvents({std::make_shared<Scene>(scene), camera, motion, duration}, sensor, Fine());
   EXPECT_GT(events.size(), 10'000u);
 
   std::vector<double> sum(48 * 36);

@@ -1,18 +1,28 @@
+#include "simulation/motion/spline_motion.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "evo/core/error.hpp"
-#include "simulation/motion/vehicle_motion.hpp"
+#include "evo/core/random.hpp"
+#include "evo/simulation/simulated_run.hpp"
+#include "simulation/motion/handheld_motion.hpp"
 
 namespace evo::simulation {
 namespace {
 
 constexpr TimeNs kEpoch = 1'504'645'177'000'000'000;
 
+geometry::Trajectory SampleFromEpoch(const PoseFunction& motion, double duration_s, double hz) {
+  geometry::Trajectory trajectory = SamplePoses(motion, FromSeconds(duration_s), hz);
+  for (auto& pose : trajectory) pose.t += kEpoch;
+  return trajectory;
+}
+
 double Difference(const geometry::SE3& a, const geometry::SE3& b) { return (a.Inverse() * b).Log().norm(); }
 
-TEST(MotionThrough, PassesThroughThePosesAtUnevenTimes) {
+TEST(SplineMotion, PassesThroughThePosesAtUnevenTimes) {
   const PoseFunction motion = MakeHandheldMotion({}, 11);
   geometry::Trajectory trajectory;
   Random random(3);
@@ -24,10 +34,10 @@ TEST(MotionThrough, PassesThroughThePosesAtUnevenTimes) {
   for (const auto& pose : trajectory) ASSERT_LT(Difference(through(pose.t - kEpoch), pose.T_world_cam), 1e-9);
 }
 
-TEST(MotionThrough, GivesASmoothMotionBackFromItsSamples) {
+TEST(SplineMotion, ReconstructsASmoothMotionFromItsSamples) {
   const PoseFunction motion = MakeHandheldMotion({}, 12);
   const auto worst = [&](double rate) {
-    const PoseFunction through = MakeSplineMotion(TrueTrajectory(motion, FromSeconds(20.0), rate, kEpoch));
+    const PoseFunction through = MakeSplineMotion(SampleFromEpoch(motion, 20.0, rate));
     double largest = 0.0;
     for (double t = 1.0; t < 19.0; t += 0.0137) {
       largest = std::max(largest, Difference(through(FromSeconds(t)), motion(FromSeconds(t))));
@@ -38,9 +48,9 @@ TEST(MotionThrough, GivesASmoothMotionBackFromItsSamples) {
   EXPECT_LT(worst(40.0), worst(20.0) / 6.0) << "third order or better";
 }
 
-TEST(MotionThrough, VelocityIsContinuousAtThePoses) {
+TEST(SplineMotion, VelocityIsContinuousAtThePoses) {
   const PoseFunction motion = MakeHandheldMotion({20.0, 0.3, 30.0, 1.0}, 13);
-  const PoseFunction through = MakeSplineMotion(TrueTrajectory(motion, FromSeconds(20.0), 5.0, kEpoch));
+  const PoseFunction through = MakeSplineMotion(SampleFromEpoch(motion, 20.0, 5.0));
   constexpr TimeNs kStep = 10'000;
   for (int i = 1; i < 100; ++i) {
     const TimeNs t = i * FromSeconds(0.2);
@@ -51,18 +61,18 @@ TEST(MotionThrough, VelocityIsContinuousAtThePoses) {
   }
 }
 
-TEST(MotionThrough, MovesTheWorldToTheFirstPose) {
+TEST(SplineMotion, MovesTheWorldToTheFirstPose) {
   const PoseFunction motion = MakeHandheldMotion({}, 14);
   const geometry::SE3 T_other_world =
       geometry::SE3::Exp((geometry::Vector6d() << 5.0, -3.0, 2.0, 0.4, 1.0, -0.7).finished());
-  geometry::Trajectory trajectory = TrueTrajectory(motion, FromSeconds(5.0), 20.0, 0);
+  geometry::Trajectory trajectory = SamplePoses(motion, FromSeconds(5.0), 20.0);
   const PoseFunction here = MakeSplineMotion(trajectory);
   for (auto& pose : trajectory) pose.T_world_cam = T_other_world * pose.T_world_cam;
   const PoseFunction there = MakeSplineMotion(trajectory);
   EXPECT_LT(Difference(here(FromSeconds(3.21)), there(FromSeconds(3.21))), 1e-9);
 }
 
-TEST(MotionThrough, TwoPosesMakeASteadyMotion) {
+TEST(SplineMotion, TwoPosesGiveAConstantVelocity) {
   const geometry::SE3 end(geometry::so3::Exp({0.0, 0.6, 0.0}), {1.0, 2.0, 3.0});
   const PoseFunction motion = MakeSplineMotion({{0, geometry::SE3()}, {kNsPerSecond, end}});
   const geometry::SE3 middle = motion(kNsPerSecond / 4);
@@ -70,12 +80,11 @@ TEST(MotionThrough, TwoPosesMakeASteadyMotion) {
   EXPECT_LT((geometry::so3::Log(middle.rotation()) - Eigen::Vector3d(0.0, 0.15, 0.0)).norm(), 1e-12);
 }
 
-TEST(MotionThrough, RefusesWhatIsNoMotionAndTimesOutside) {
+TEST(SplineMotion, RejectsTooFewPosesAndTimesOutside) {
   EXPECT_THROW(MakeSplineMotion({}), Error);
   EXPECT_THROW(MakeSplineMotion({{0, geometry::SE3()}}), Error);
   EXPECT_THROW(MakeSplineMotion({{5, geometry::SE3()}, {5, geometry::SE3()}}), Error);
-  EXPECT_THROW(MakeSplineMotion({{0, geometry::SE3()}, {5, geometry::SE3({1, 0, 0, 0}, {std::nan(""), 0, 0})}}),
-               Error);
+  EXPECT_THROW(MakeSplineMotion({{0, geometry::SE3()}, {5, geometry::SE3({1, 0, 0, 0}, {std::nan(""), 0, 0})}}), Error);
   const PoseFunction motion = MakeSplineMotion({{100, geometry::SE3()}, {200, geometry::SE3()}});
   EXPECT_NO_THROW(motion(100));
   EXPECT_THROW(motion(101), Error);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "evo/core/parallel.hpp"
 #include "simulation/render_scene.hpp"
 
 namespace evo::simulation {
@@ -16,7 +17,7 @@ TEST(DepthCamera, SeesWhatEachRayMeets) {
   const Scene scene = RandomScene(150, 6);
   for (const geometry::Camera& camera : {Davis346(), geometry::Camera(geometry::Rectified(Davis346().calibration()))}) {
     ThreadPool pool(2);
-    const events::DepthMap map = DepthCamera(scene, camera, &pool).At(kTime, kPose);
+    const events::DepthMap map = DepthCamera(scene, camera, &pool).Render(kTime, kPose);
     ASSERT_EQ(map.width, 346);
     ASSERT_EQ(map.height, 260);
     int seen = 0, moving = 0;
@@ -44,8 +45,8 @@ TEST(DepthCamera, IsTheSameForAnyNumberOfThreads) {
   const geometry::Camera camera = Davis240();
   ThreadPool one(1);
   ThreadPool three(3);
-  const events::DepthMap map = DepthCamera(scene, camera, &one).At(kTime, kPose);
-  const events::DepthMap same = DepthCamera(scene, camera, &three).At(kTime, kPose);
+  const events::DepthMap map = DepthCamera(scene, camera, &one).Render(kTime, kPose);
+  const events::DepthMap same = DepthCamera(scene, camera, &three).Render(kTime, kPose);
   EXPECT_EQ(map.moving, same.moving);
   for (std::size_t i = 0; i < map.depth.size(); ++i) {
     ASSERT_TRUE(map.depth[i] == same.depth[i] || (std::isnan(map.depth[i]) && std::isnan(same.depth[i]))) << i;

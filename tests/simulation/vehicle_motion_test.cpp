@@ -7,13 +7,14 @@
 #include <numbers>
 
 #include "evo/core/error.hpp"
+#include "simulation/velocity_step.hpp"
 
 namespace evo::simulation {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Without what shakes the camera.
+/// Without vibration and bumps.
 VehicleOptions Quiet() {
   VehicleOptions options;
   options.vibration_deg = 0.0;
@@ -22,31 +23,6 @@ VehicleOptions Quiet() {
 
 double SpeedAt(const VehicleMotion& motion, double t) {
   return (motion.distance_m(FromSeconds(t + 0.001)) - motion.distance_m(FromSeconds(t - 0.001))) / 0.002;
-}
-
-/// Largest change of the velocity (m/s) and of the body's rate of rotation (rad/s) from one 2 ms to the next.
-struct Jolt {
-  double linear = 0.0;
-  double angular = 0.0;
-};
-Jolt LargestJolt(const PoseFunction& motion, double from, double to) {
-  constexpr double kStep = 0.002;
-  Jolt jolt;
-  Eigen::Vector3d last_velocity = Eigen::Vector3d::Zero(), last_rate = Eigen::Vector3d::Zero();
-  bool first = true;
-  for (double t = from; t < to; t += kStep) {
-    const geometry::SE3 a = motion(FromSeconds(t)), b = motion(FromSeconds(t + kStep));
-    const Eigen::Vector3d velocity = (b.translation() - a.translation()) / kStep;
-    const Eigen::Vector3d rate = geometry::so3::Log(a.rotation().conjugate() * b.rotation()) / kStep;
-    if (!first) {
-      jolt.linear = std::max(jolt.linear, (velocity - last_velocity).norm());
-      jolt.angular = std::max(jolt.angular, (rate - last_rate).norm());
-    }
-    last_velocity = velocity;
-    last_rate = rate;
-    first = false;
-  }
-  return jolt;
 }
 
 TEST(VehicleMotion, CruisesAtConstantSpeed) {
@@ -102,11 +78,11 @@ TEST(VehicleMotion, AccelerationStaysWithinItsLimitAndChangesSmoothly) {
 
 TEST(VehicleMotion, SlowsDownForTurnsAndEndsAtARightAngle) {
   const ReferenceLine road("turns", 80.0, 0.0, 2);
-  ASSERT_EQ(road.crossings().size(), 1U);
+  ASSERT_EQ(road.junctions().size(), 1U);
   const VehicleMotion motion = MakeVehicleMotion(road, Quiet(), 1);
   double slowest = 1e9;
-  for (double t = 5.0; motion.distance_m(FromSeconds(t)) < road.crossings().front() + 3.0; t += 0.01) {
-    const double to_turn = std::abs(motion.distance_m(FromSeconds(t)) - road.crossings().front());
+  for (double t = 5.0; motion.distance_m(FromSeconds(t)) < road.junctions().front() + 3.0; t += 0.01) {
+    const double to_turn = std::abs(motion.distance_m(FromSeconds(t)) - road.junctions().front());
     if (to_turn < 3.0) {
       ASSERT_LE(SpeedAt(motion, t), 4.1);
     }
@@ -122,12 +98,12 @@ TEST(VehicleMotion, StartsAtTheIdentityAndKeepsItsHeightAboveTheRoad) {
   VehicleOptions options;
   options.bumps_at_s = "0,12";
   const ReferenceLine road("curved", 440.0, 0.08, 4);
-  const VehicleMotion shaken = MakeVehicleMotion(road, options, 1);
-  EXPECT_EQ(shaken.T_world_cam(0).translation(), Eigen::Vector3d::Zero());
-  EXPECT_EQ(geometry::so3::Log(shaken.T_world_cam(0).rotation()), Eigen::Vector3d::Zero());
+  const VehicleMotion bumpy = MakeVehicleMotion(road, options, 1);
+  EXPECT_EQ(bumpy.T_world_cam(0).translation(), Eigen::Vector3d::Zero());
+  EXPECT_EQ(geometry::so3::Log(bumpy.T_world_cam(0).rotation()), Eigen::Vector3d::Zero());
   const VehicleMotion motion = MakeVehicleMotion(road, Quiet(), 1);
   for (double t = 0.0; t < 60.0; t += 0.7) {
-    const auto point = road.At(motion.distance_m(FromSeconds(t)));
+    const auto point = road.PointAt(motion.distance_m(FromSeconds(t)));
     const Eigen::Vector3d below =
         motion.T_world_cam(FromSeconds(t)).Inverse() * Eigen::Vector3d(point.position + Eigen::Vector3d(0.0, 1.5, 0.0));
     ASSERT_LT((below - Eigen::Vector3d(0.0, 1.5, 0.0)).norm(), 1e-9) << "the road right below the camera";
@@ -181,12 +157,12 @@ TEST(VehicleMotion, VelocityIsContinuousThroughBumpsTurnsAndVibration) {
   options.bumps_at_s = "12,25,41.5";
   options.stop_every_s = 20.0;
   const ReferenceLine road("turns", 440.0, 0.05, 7);
-  const Jolt jolt = LargestJolt(MakeVehicleMotion(road, options, 7).T_world_cam, 0.0, 60.0);
+  const VelocityStep step = LargestVelocityStep(MakeVehicleMotion(road, options, 7).T_world_cam, 0.0, 60.0);
   // Within 2 ms: a bump of 0.06 m needs up to 24 m/s^2, one of 2 degrees 14 rad/s^2, vibration of 0.05
   // degrees at 12 Hz up to 20 rad/s^2.
-  EXPECT_LT(jolt.linear, 0.002 * 28.0);
-  EXPECT_LT(jolt.angular, 0.002 * 40.0);
-  const Jolt quiet = LargestJolt(MakeVehicleMotion(road, Quiet(), 7).T_world_cam, 0.0, 60.0);
+  EXPECT_LT(step.linear, 0.002 * 28.0);
+  EXPECT_LT(step.angular, 0.002 * 40.0);
+  const VelocityStep quiet = LargestVelocityStep(MakeVehicleMotion(road, Quiet(), 7).T_world_cam, 0.0, 60.0);
   EXPECT_LT(quiet.linear, 0.002 * 3.0) << "1.5 m/s^2 along and 2 m/s^2 across";
   EXPECT_LT(quiet.angular, 0.002 * 0.8) << "into a clothoid at 5 m/s";
 }
@@ -219,25 +195,7 @@ TEST(VehicleMotion, SameSeedSameMotion) {
   EXPECT_NE(a.T_world_cam(t).Matrix(), c.T_world_cam(t).Matrix());
 }
 
-TEST(VehicleMotion, ReadsTimesOfBumps) {
-  VehicleOptions options;
-  EXPECT_TRUE(BumpTimes(options).empty());
-  options.bumps_at_s = "52, 48.5,70";
-  EXPECT_EQ(BumpTimes(options), (std::vector<double>{48.5, 52.0})) << "in order, within the run";
-  options.bumps_at_s = "every 15";
-  EXPECT_EQ(BumpTimes(options), (std::vector<double>{15.0, 30.0, 45.0, 60.0}));
-  Parameters parameters;
-  Register(parameters, options);
-  parameters.Set("motion.vehicle.bumps_at_s=52,60");
-  EXPECT_EQ(options.bumps_at_s, "52,60");
-  for (const std::string text : {"often", "every", "every 0", "every -1", "5,", ",5", "5;6", "-3", "nan", "1e400"}) {
-    options.bumps_at_s = text;
-    EXPECT_THROW(BumpTimes(options), Error) << text;
-    EXPECT_THROW(parameters.Set("motion.vehicle.bumps_at_s=" + text), Error) << text;
-  }
-}
-
-TEST(VehicleMotion, RefusesImpossibleOptions) {
+TEST(VehicleMotion, RejectsInvalidOptions) {
   const ReferenceLine road("straight", 100.0, 0.0, 1);
   VehicleOptions options;
   options.speed_m_s = 0.0;
@@ -245,51 +203,9 @@ TEST(VehicleMotion, RefusesImpossibleOptions) {
   options = {};
   options.duration_s = std::nan("");
   EXPECT_THROW(MakeVehicleMotion(road, options, 1), Error);
-}
-
-TEST(HandheldMotion, StartsAtRestAndHasItsSize) {
-  HandheldOptions options;
-  options.duration_s = 400.0;
-  const PoseFunction motion = MakeHandheldMotion(options, 5);
-  EXPECT_EQ(motion(0).Matrix(), geometry::SE3().Matrix());
-  EXPECT_LT(motion(FromSeconds(0.01)).translation().norm(), 1e-5);
-  double translation = 0.0, rotation = 0.0, farthest = 0.0;
-  constexpr int kSamples = 20000;
-  for (int i = 0; i < kSamples; ++i) {
-    const geometry::SE3 pose = motion(FromSeconds(2.0 + 0.02 * i));
-    translation += pose.translation().squaredNorm() / (3.0 * kSamples);
-    rotation += geometry::so3::Log(pose.rotation()).squaredNorm() / (3.0 * kSamples);
-    farthest = std::max(farthest, pose.translation().cwiseAbs().maxCoeff());
-  }
-  EXPECT_NEAR(std::sqrt(translation), 0.3, 0.01);
-  EXPECT_NEAR(std::sqrt(rotation) * 180.0 / kPi, 12.0, 0.4);
-  EXPECT_LT(farthest, 1.2);
-  const Jolt jolt = LargestJolt(motion, 0.0, 30.0);
-  EXPECT_LT(jolt.linear, 0.002 * 8.0);
-  EXPECT_LT(jolt.angular, 0.002 * 8.0);
-  EXPECT_EQ(motion(FromSeconds(9.0)).Matrix(), MakeHandheldMotion(options, 5)(FromSeconds(9.0)).Matrix());
-  EXPECT_NE(motion(FromSeconds(9.0)).Matrix(), MakeHandheldMotion(options, 6)(FromSeconds(9.0)).Matrix());
-}
-
-TEST(SliderMotion, CoversItsLengthAtConstantSpeed) {
-  const PoseFunction motion = MakeSliderMotion({});
-  EXPECT_EQ(motion(0).Matrix(), geometry::SE3().Matrix());
-  EXPECT_NEAR(motion(FromSeconds(3.0)).translation().x(), 0.6, 1e-12);
-  const double speed = 0.6 / 2.95;
-  EXPECT_NEAR(motion(FromSeconds(2.0)).translation().x() - motion(FromSeconds(1.0)).translation().x(), speed, 1e-12);
-  EXPECT_LT(LargestJolt(motion, 0.0, 3.0).linear, 0.002 * 1.5 * speed / 0.1 * 1.01);
-  EXPECT_THROW(MakeSliderMotion({0.05, 1.0}), Error);
-}
-
-TEST(TrueTrajectory, SamplesTheMotionUpToItsEnd) {
-  const PoseFunction motion = MakeSliderMotion({});
-  const TimeNs epoch = 1'504'645'177'420'000'123;
-  const geometry::Trajectory truth = TrueTrajectory(motion, FromSeconds(3.0), 20.0, epoch);
-  ASSERT_EQ(truth.size(), 61U);
-  EXPECT_EQ(truth.front().t, epoch);
-  EXPECT_EQ(truth.back().t, epoch + FromSeconds(3.0));
-  EXPECT_EQ(truth[7].T_world_cam.Matrix(), motion(FromSeconds(0.35)).Matrix());
-  EXPECT_THROW(TrueTrajectory(motion, 1, 0.0, 0), Error);
+  options = {};
+  options.bumps_at_s = "often";
+  EXPECT_THROW(MakeVehicleMotion(road, options, 1), Error);
 }
 
 }  // namespace

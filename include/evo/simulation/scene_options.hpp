@@ -65,8 +65,8 @@ struct SliderOptions {
   double length_m = 0.6;
 };
 
-/// Names sensor.*. The defaults are a DAVIS346 as set up for the MVSEC drives, with about three negative events for each
-/// positive one. They hold for day and night: the light makes the pixels slow and noisy.
+/// Names sensor.*. The defaults are a DAVIS346 as set up for the MVSEC drives, with about three negative events for
+/// each positive one. They hold for day and night: the light makes the pixels slow and noisy.
 struct SensorOptions {
   // Contrast thresholds.
   double threshold_on = 0.65;

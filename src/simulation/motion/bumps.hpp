@@ -6,8 +6,8 @@
 
 namespace evo::simulation {
 
-/// The times (s) of bumps within [0, duration_s], increasing, from "52,60" or "every 5" (0.1 or more); none for an empty
-/// text. nullopt for another text.
+/// The times (s) of bumps within [0, duration_s], increasing, from "52,60" or "every 5" (0.1 or more); none for an
+/// empty text. nullopt for another text.
 std::optional<std::vector<double>> ParseBumpTimes(std::string_view text, double duration_s);
 
 /// The response is below 1e-5 of its peak so long after a bump, s.

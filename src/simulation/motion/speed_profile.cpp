@@ -65,7 +65,8 @@ SpeedProfile::SpeedProfile(const ReferenceLine& road, const VehicleOptions& opti
   }
 }
 
-std::vector<double> SpeedProfile::IntegrateSpeeds(const ReferenceLine& road, const VehicleOptions& options, int samples) {
+std::vector<double> SpeedProfile::IntegrateSpeeds(const ReferenceLine& road, const VehicleOptions& options,
+                                                  int samples) {
   const SpeedLimit limit(road, options);
   const bool rests = options.start_at_rest_s > 0.0;
   // The averages shorten a stand by kSupport at each of its ends.

@@ -32,8 +32,8 @@ struct Segment {
   Cubic rotation;
 };
 
-/// The velocity at each pose of the parabola through it and its neighbours, at the ends the mean velocity of the segment.
-/// `steps` are the differences between poses, `seconds` apart.
+/// The velocity at each pose of the parabola through it and its neighbours, at the ends the mean velocity of the
+/// segment. `steps` are the differences between poses, `seconds` apart.
 std::vector<Eigen::Vector3d> Velocities(const std::vector<Eigen::Vector3d>& steps, const std::vector<double>& seconds) {
   std::vector<Eigen::Vector3d> velocities{steps.front() / seconds.front()};
   for (std::size_t i = 1; i < steps.size(); ++i) {
@@ -63,8 +63,8 @@ std::vector<Segment> FitSegments(const geometry::Trajectory& trajectory) {
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const Eigen::Vector3d last_slope = geometry::so3::LeftJacobian(-rotations[i]).inverse() * angular_velocities[i + 1];
     segments.push_back({trajectory[i].t - trajectory.front().t, seconds[i], poses[i],
-                         Cubic(steps[i], velocities[i] * seconds[i], velocities[i + 1] * seconds[i]),
-                         Cubic(rotations[i], angular_velocities[i] * seconds[i], last_slope * seconds[i])});
+                        Cubic(steps[i], velocities[i] * seconds[i], velocities[i + 1] * seconds[i]),
+                        Cubic(rotations[i], angular_velocities[i] * seconds[i], last_slope * seconds[i])});
   }
   return segments;
 }
@@ -74,8 +74,8 @@ void CheckPoses(const geometry::Trajectory& trajectory) {
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
     if (i > 0 && trajectory[i].t <= trajectory[i - 1].t) {
       throw Error(ErrorKind::kInput,
-                  fmt::format("a motion needs poses in order of time; pose {} at {} s is not after the one before", i + 1,
-                              FormatTime(trajectory[i].t)));
+                  fmt::format("a motion needs poses in order of time; pose {} at {} s is not after the one before",
+                              i + 1, FormatTime(trajectory[i].t)));
     }
     if (!trajectory[i].T_world_cam.Matrix().allFinite()) {
       throw Error(ErrorKind::kInput, fmt::format("a motion needs finite poses; pose {} is not", i + 1));
@@ -91,10 +91,11 @@ PoseFunction MakeSplineMotion(const geometry::Trajectory& trajectory) {
   const TimeNs duration = trajectory.back().t - trajectory.front().t;
   return [segments, duration](TimeNs t) -> geometry::SE3 {
     if (t < 0 || t > duration) {
-      throw Error(ErrorKind::kNothingToDo,
-                  fmt::format("the trajectory to move along lasts from 0 s to {} s but a pose is needed at {} s; simulate a "
-                              "shorter time",
-                              FormatTime(duration), FormatTime(t)));
+      throw Error(
+          ErrorKind::kNothingToDo,
+          fmt::format("the trajectory to move along lasts from 0 s to {} s but a pose is needed at {} s; simulate a "
+                      "shorter time",
+                      FormatTime(duration), FormatTime(t)));
     }
     const auto next = std::ranges::upper_bound(segments->begin() + 1, segments->end(), t, {}, &Segment::start);
     const Segment& segment = *(next - 1);

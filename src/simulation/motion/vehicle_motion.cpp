@@ -22,10 +22,10 @@ constexpr std::uint64_t kStream = 0x636172;  // "car"
 constexpr double kRadPerDegree = std::numbers::pi / 180.0;
 
 // Vibration grows with the speed; a standing car's comes from its engine.
-constexpr double kIdleVibration = 0.1;        // amplitude at rest over that at full speed
-constexpr double kFullVibrationSpeed = 5.0;   // m/s, of the full amplitude
-constexpr double kVibrationOnset = 0.2;       // s, so that the run starts at the identity
-constexpr double kFullBumpSpeed = 2.0;        // m/s, from which on a bump has its full amplitude
+constexpr double kIdleVibration = 0.1;       // amplitude at rest over that at full speed
+constexpr double kFullVibrationSpeed = 5.0;  // m/s, of the full amplitude
+constexpr double kVibrationOnset = 0.2;      // s, so that the run starts at the identity
+constexpr double kFullBumpSpeed = 2.0;       // m/s, from which on a bump has its full amplitude
 
 struct Bump {
   double time = 0.0;       ///< s
@@ -65,7 +65,8 @@ class Vehicle {
 
   geometry::SE3 PoseAt(double t) const {
     const ReferenceLine::Point point = road_.PointAt(DistanceAt(t));
-    const Eigen::Quaterniond R_world_road = geometry::so3::Exp({0.0, point.heading, 0.0}) * geometry::so3::Exp({point.pitch, 0.0, 0.0});
+    const Eigen::Quaterniond R_world_road =
+        geometry::so3::Exp({0.0, point.heading, 0.0}) * geometry::so3::Exp({point.pitch, 0.0, 0.0});
     Eigen::Vector3d rotation = VibrationAt(t);
     double heave = 0.0;
     auto bump = std::ranges::lower_bound(bumps_, t - kBumpDuration, {}, &Bump::time);
@@ -76,8 +77,9 @@ class Vehicle {
       heave += x * options_.bump_heave_m;
     }
     const double height = options_.camera_height_m;
-    return {R_world_road * geometry::so3::Exp(rotation) * R_vehicle_cam_,
-            point.position + Eigen::Vector3d(0.0, height, 0.0) + R_world_road * Eigen::Vector3d(0.0, -height - heave, 0.0)};
+    return {
+        R_world_road * geometry::so3::Exp(rotation) * R_vehicle_cam_,
+        point.position + Eigen::Vector3d(0.0, height, 0.0) + R_world_road * Eigen::Vector3d(0.0, -height - heave, 0.0)};
   }
 
  private:
@@ -85,8 +87,7 @@ class Vehicle {
     const double speed_ratio = SmootherStep(speeds_.SpeedAt(t) / kFullVibrationSpeed);
     const double amplitude =
         (kIdleVibration + (1.0 - kIdleVibration) * speed_ratio) * SmootherStep(t / kVibrationOnset);
-    return amplitude *
-           Eigen::Vector3d(vibration_[0].Evaluate(t), vibration_[1].Evaluate(t), vibration_[2].Evaluate(t));
+    return amplitude * Eigen::Vector3d(vibration_[0].Evaluate(t), vibration_[1].Evaluate(t), vibration_[2].Evaluate(t));
   }
 
   ReferenceLine road_;

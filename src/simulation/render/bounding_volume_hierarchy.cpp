@@ -26,8 +26,8 @@ std::array<Vector3d, 4> Corners(const Surface& s) {
 /// The planes of the frustum's sides at both ends of a motion relative to a body.
 class BoundingVolumeHierarchy::SweptFrustum {
  public:
-  SweptFrustum(const RayFrustum& rays, const geometry::SE3& T_cam_body_from, const geometry::SE3& T_cam_body_to, double rotation_rad,
-        double translation_m)
+  SweptFrustum(const RayFrustum& rays, const geometry::SE3& T_cam_body_from, const geometry::SE3& T_cam_body_to,
+               double rotation_rad, double translation_m)
       : ends_{End{T_cam_body_from.RotationMatrix(), T_cam_body_from.translation()},
               End{T_cam_body_to.RotationMatrix(), T_cam_body_to.translation()}},
         sides_{Vector3d(1, 0, -rays.x0).normalized(), Vector3d(-1, 0, rays.x1).normalized(),
@@ -46,7 +46,8 @@ class BoundingVolumeHierarchy::SweptFrustum {
     for (int i = 0; i < kSides; ++i) {
       bool outside = true;
       for (const End& end : ends_) {
-        outside = outside && end.sides[i].dot(centre) + end.offsets[i] + end.sides[i].cwiseAbs().dot(half_size) < -deviation;
+        outside =
+            outside && end.sides[i].dot(centre) + end.offsets[i] + end.sides[i].cwiseAbs().dot(half_size) < -deviation;
       }
       if (outside) return false;
     }
@@ -109,9 +110,10 @@ BoundingVolumeHierarchy::BoundingVolumeHierarchy(const Scene& scene) : scene_(sc
     const Surface& surface = scene.surfaces[i];
     if (surface.body < 0 || surface.body >= static_cast<int>(scene.bodies.size()) || surface.texture < 0 ||
         surface.texture >= static_cast<int>(scene.textures.size())) {
-      throw Error(ErrorKind::kInput,
-                  fmt::format("scene: surface {} names texture {} and body {}, but the scene has {} textures and {} bodies",
-                              i, surface.texture, surface.body, scene.textures.size(), scene.bodies.size()));
+      throw Error(
+          ErrorKind::kInput,
+          fmt::format("scene: surface {} names texture {} and body {}, but the scene has {} textures and {} bodies", i,
+                      surface.texture, surface.body, scene.textures.size(), scene.bodies.size()));
     }
     corners_.push_back(Corners(surface));
     if (surface.body == 0) {
@@ -153,8 +155,9 @@ void BoundingVolumeHierarchy::Build(int begin, int end) {
   nodes_[index].skip = static_cast<int>(nodes_.size());
 }
 
-std::vector<int> BoundingVolumeHierarchy::Find(const RayFrustum& rays, TimeNs from, TimeNs to, const geometry::SE3& T_world_cam_from,
-                                   const geometry::SE3& T_world_cam_to) const {
+std::vector<int> BoundingVolumeHierarchy::Find(const RayFrustum& rays, TimeNs from, TimeNs to,
+                                               const geometry::SE3& T_world_cam_from,
+                                               const geometry::SE3& T_world_cam_to) const {
   std::vector<int> found;
   const geometry::SE3 T_cam_world_from = T_world_cam_from.Inverse();
   const geometry::SE3 T_cam_world_to = T_world_cam_to.Inverse();
@@ -182,8 +185,8 @@ std::vector<int> BoundingVolumeHierarchy::Find(const RayFrustum& rays, TimeNs fr
     const geometry::SE3 T_world_body_from = BodyPose(scene_, body.body, from);
     const geometry::SE3 T_world_body_to = BodyPose(scene_, body.body, to);
     const SweptFrustum moving(rays, T_cam_world_from * T_world_body_from, T_cam_world_to * T_world_body_to,
-                       camera_rotation + angle(T_world_body_from, T_world_body_to),
-                       camera_translation + distance(T_world_body_from, T_world_body_to));
+                              camera_rotation + angle(T_world_body_from, T_world_body_to),
+                              camera_translation + distance(T_world_body_from, T_world_body_to));
     if (!moving.IntersectsSphere(Vector3d::Zero(), body.radius)) continue;
     for (const int surface : body.surfaces) {
       if (moving.IntersectsHull(corners_[surface])) found.push_back(surface);

@@ -22,7 +22,8 @@ struct Range {
 };
 
 /// Inverse depths (1/m) of the surface along rays of the frustum.
-Range InverseDepths(const Surface& s, const ProjectedSurface& projected, const geometry::SE3& T_cam_body, const RayFrustum& rays) {
+Range InverseDepths(const Surface& s, const ProjectedSurface& projected, const geometry::SE3& T_cam_body,
+                    const RayFrustum& rays) {
   double near = std::numeric_limits<double>::infinity();
   double far = 0.0;
   for (const Vector3d& corner : {s.origin, Vector3d(s.origin + s.edge_u), Vector3d(s.origin + s.edge_v),

@@ -36,10 +36,11 @@ Lights::SurfaceLights Lights::SelectFor(const ProjectedSurface& surface, const R
   for (const LampInCamera& lamp : lamps_) {
     const float height = surface.distance - surface.normal.dot(lamp.position);  // on the visible side
     if (height <= 0.0F || Square(height) >= lamp.range2) continue;
-    const float gap2 =
-        SquaredGap(lamp.position.x(), std::min(near * rays.x0, far * rays.x0), std::max(near * rays.x1, far * rays.x1)) +
-        SquaredGap(lamp.position.y(), std::min(near * rays.y0, far * rays.y0), std::max(near * rays.y1, far * rays.y1)) +
-        SquaredGap(lamp.position.z(), near, far);
+    const float gap2 = SquaredGap(lamp.position.x(), std::min(near * rays.x0, far * rays.x0),
+                                  std::max(near * rays.x1, far * rays.x1)) +
+                       SquaredGap(lamp.position.y(), std::min(near * rays.y0, far * rays.y0),
+                                  std::max(near * rays.y1, far * rays.y1)) +
+                       SquaredGap(lamp.position.z(), near, far);
     if (gap2 < lamp.range2) selected.lamps.push_back({lamp.position, lamp.intensity * height, 1.0F / lamp.range2});
   }
   return selected;

@@ -74,7 +74,8 @@ bool SurfaceProjector::Project(int surface, const RayFrustum& rays, ProjectedSur
   projected->v_over_depth = LinearForm(vw);
   // The Jacobian of (u, v) with respect to (x, y) has the determinant det(uw, vw, w) / w^3.
   const double determinant = std::abs(uw.cross(vw).dot(w));
-  projected->mip_level = determinant > kMinDeterminant ? FastLog2(static_cast<float>(determinant)) * 0.5F : kFinestLevel;
+  projected->mip_level =
+      determinant > kMinDeterminant ? FastLog2(static_cast<float>(determinant)) * 0.5F : kFinestLevel;
   projected->texture = &texture;
   projected->light = static_cast<float>(scene_.lighting.ambient) * s.shade;
   projected->emission = s.emission;

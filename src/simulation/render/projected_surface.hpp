@@ -35,10 +35,10 @@ inline LinearForm operator-(const LinearForm& f, const LinearForm& g) {
   return difference;
 }
 
-/// A surface as seen from a camera pose. With n = edge_u x edge_v, the inverse depth n.(x, y, 1) / n.origin of its plane
-/// along the ray (x, y, 1) is linear in x and y, and so are a, b and the texture coordinates over depth (edge functions
-/// in homogeneous coordinates: M. Olano and T. Greer, Triangle Scan Conversion using 2D Homogeneous Coordinates,
-/// Graphics Hardware 1997). A ray hits where 0 <= a / z, b / z <= 1 / z and 1 / z > 0, without a division.
+/// A surface as seen from a camera pose. With n = edge_u x edge_v, the inverse depth n.(x, y, 1) / n.origin of its
+/// plane along the ray (x, y, 1) is linear in x and y, and so are a, b and the texture coordinates over depth (edge
+/// functions in homogeneous coordinates: M. Olano and T. Greer, Triangle Scan Conversion using 2D Homogeneous
+/// Coordinates, Graphics Hardware 1997). A ray hits where 0 <= a / z, b / z <= 1 / z and 1 / z > 0, without a division.
 struct ProjectedSurface {
   LinearForm inverse_depth;
   LinearForm a_over_depth, b_over_depth;

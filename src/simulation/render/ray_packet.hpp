@@ -34,8 +34,8 @@ std::vector<const ProjectedSurface*> CullOccluded(const std::vector<ProjectedSur
                                                   const RayFrustum& rays);
 
 /// Traces the rays through the holes of what they hit, from front to back. `shade(i, surface)` handles the hit of ray i
-/// on `surfaces[surface]`, or the sky (-1), and returns the hit's transmittance. A ray ends at a transmittance of 1/256,
-/// the step of a grey image.
+/// on `surfaces[surface]`, or the sky (-1), and returns the hit's transmittance. A ray ends at a transmittance of
+/// 1/256, the step of a grey image.
 template <typename Shader>
 void TraceThroughHoles(const std::vector<const ProjectedSurface*>& surfaces, RayPacket* packet, const Shader& shade) {
   constexpr float kMinTransmittance = 1.0F / 256.0F;

@@ -122,7 +122,7 @@ Renderer::Rays Renderer::CastRays(int samples) {
     for (int j = 0; j < samples; ++j) {
       for (int i = 0; i < samples; ++i) {
         const Vector2d offset((i + (j + shift_x) / samples) / samples,
-                             (j + (samples - 1 - i + shift_y) / samples) / samples);
+                              (j + (samples - 1 - i + shift_y) / samples) / samples);
         const auto found = camera_.Undistort(centre + offset - Vector2d(0.5, 0.5));
         if (found) ray = *found;
         if (!found) has_no_ray_[p] = 1;
@@ -142,8 +142,9 @@ Renderer::Rays Renderer::CastRays(int samples) {
   return rays;
 }
 
-Renderer::VisibleSet Renderer::FindVisible(const Tile& tile, TimeNs from, TimeNs to, const geometry::SE3& T_world_cam_from,
-                                        const geometry::SE3& T_world_cam_to) const {
+Renderer::VisibleSet Renderer::FindVisible(const Tile& tile, TimeNs from, TimeNs to,
+                                           const geometry::SE3& T_world_cam_from,
+                                           const geometry::SE3& T_world_cam_to) const {
   RayFrustum rays = TileFrustum(tile);
   const float pixel = std::exp2(*std::max_element(centres_.log2_spacing.begin(), centres_.log2_spacing.end()));
   rays = {rays.x0 - pixel, rays.x1 + pixel, rays.y0 - pixel, rays.y1 + pixel};
@@ -209,7 +210,7 @@ void Renderer::Render(const Tile& tile, const VisibleSet& visible, TimeNs t, con
 }
 
 void Renderer::RenderDepth(const Tile& tile, const VisibleSet& visible, TimeNs t, const geometry::SE3& T_world_cam,
-                     std::span<float> depth, std::span<std::uint8_t> moving) const {
+                           std::span<float> depth, std::span<std::uint8_t> moving) const {
   const auto surfaces = SurfaceProjector(scene_, t, T_world_cam).ProjectAll(visible.surfaces, TileFrustum(tile));
   RayPacket packet;
   ForEachPart(tile, 1, [&](const Tile& part) {

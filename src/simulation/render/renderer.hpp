@@ -25,10 +25,9 @@ struct RayPacket;
 class Renderer {
  public:
   /// A pixel is the mean over its square of samples x samples rays in a rotated grid: no two rays share a row or a
-  /// column, so that an edge that crosses a pixel changes it in samples^2 steps. A shift of the grid from pixel to pixel
-  /// by less than such a step keeps edges along the pixels unbiased.
-  /// Throws Error(kInput) for `samples` outside [1, 16] and for a surface with a texture or body that the scene does not
-  /// have.
+  /// column, so that an edge that crosses a pixel changes it in samples^2 steps. A shift of the grid from pixel to
+  /// pixel by less than such a step keeps edges along the pixels unbiased. Throws Error(kInput) for `samples` outside
+  /// [1, 16] and for a surface with a texture or body that the scene does not have.
   Renderer(const Scene& scene, const geometry::Camera& camera, int samples);
 
   /// The potentially visible set: indices of the surfaces that a pixel of a tile may see during a motion.
@@ -52,8 +51,8 @@ class Renderer {
   void Render(const Tile& tile, const VisibleSet& visible, TimeNs t, const geometry::SE3& T_world_cam,
               Radiance* radiance) const;
 
-  /// Depth (z in the camera frame, m) along the rays through the pixel centres to the nearest surface with a coverage of
-  /// at least 0.5, NaN for sky and for pixels without a ray; `moving` is 1 for a surface of a moving body, else 0.
+  /// Depth (z in the camera frame, m) along the rays through the pixel centres to the nearest surface with a coverage
+  /// of at least 0.5, NaN for sky and for pixels without a ray; `moving` is 1 for a surface of a moving body, else 0.
   void RenderDepth(const Tile& tile, const VisibleSet& visible, TimeNs t, const geometry::SE3& T_world_cam,
                    std::span<float> depth, std::span<std::uint8_t> moving) const;
 

@@ -15,9 +15,9 @@ namespace evo::simulation {
 
 namespace {
 
-constexpr double kMinThreshold = 0.01;    // v2e's limit: a pixel below it fires at every change
-constexpr float kBrightNoise = 0.25F;     // shot noise rate at radiance 1 over that in the dark, as in v2e
-constexpr float kMaxRadiance = 1e30F;     // FastLog still holds after dark_radiance is added
+constexpr double kMinThreshold = 0.01;  // v2e's limit: a pixel below it fires at every change
+constexpr float kBrightNoise = 0.25F;   // shot noise rate at radiance 1 over that in the dark, as in v2e
+constexpr float kMaxRadiance = 1e30F;   // FastLog still holds after dark_radiance is added
 constexpr TimeNs kNotStarted = std::numeric_limits<TimeNs>::min();
 constexpr TimeNs kMicrosecond = 1000;
 constexpr float kRefractory = std::numeric_limits<float>::quiet_NaN();
@@ -45,13 +45,14 @@ EventSensor::EventSensor(int width, int height, const SensorOptions& options, st
   constexpr int kMaxSize = std::numeric_limits<std::uint16_t>::max();
   if (width < 1 || height < 1 || width > kMaxSize || height > kMaxSize) {
     throw Error(ErrorKind::kConfiguration,
-                fmt::format("an event sensor of {} x {} px is not possible; use 1 to {} on each side", width, height, kMaxSize));
+                fmt::format("an event sensor of {} x {} px is not possible; use 1 to {} on each side", width, height,
+                            kMaxSize));
   }
   const std::size_t pixels = width_ * height_;
   time_.assign(pixels, kNotStarted);
   refractory_until_.assign(pixels, 0);
-  for (auto* column : {&radiance_, &log_radiance_, &photoreceptor_, &amplifier_, &threshold_on_, &threshold_off_, &leak_,
-                       &noise_budget_}) {
+  for (auto* column : {&radiance_, &log_radiance_, &photoreceptor_, &amplifier_, &threshold_on_, &threshold_off_,
+                       &leak_, &noise_budget_}) {
     column->assign(pixels, 0.0F);
   }
   random_.reserve(pixels);
@@ -89,8 +90,8 @@ void EventSensor::CheckInput(const Tile& tile, std::span<const float> radiance) 
                       static_cast<std::size_t>(tile.y0) + static_cast<std::size_t>(tile.height) <= height_;
   if (!inside) throw Error(ErrorKind::kInput, "a tile lies outside the event sensor");
   if (radiance.size() != tile.pixels()) {
-    throw Error(ErrorKind::kInput, fmt::format("an event sensor's tile of {} x {} px got {} values of radiance", tile.width,
-                                               tile.height, radiance.size()));
+    throw Error(ErrorKind::kInput, fmt::format("an event sensor's tile of {} x {} px got {} values of radiance",
+                                               tile.width, tile.height, radiance.size()));
   }
   std::size_t bad = 0;
   for (const float value : radiance) bad += value >= 0.0F && value <= kMaxRadiance ? 0 : 1;
@@ -115,7 +116,7 @@ void EventSensor::Advance(const Tile& tile, TimeNs t, std::span<const float> rad
   const float* row_radiance = radiance.data();
   PixelRun run;
   for (int y = 0; y < tile.height; ++y, row_radiance += tile_width) {
-    for (std::size_t x = 0; x < tile_width; x += kRunSizeSize) {
+    for (std::size_t x = 0; x < tile_width; x += kRunSize) {
       run.first = first + static_cast<std::size_t>(y) * width_ + x;
       run.count = std::min(kRunSize, tile_width - x);
       AdvanceRun(step, row_radiance + x, &run, events);
@@ -157,7 +158,8 @@ std::int32_t EventSensor::PredictWithoutEvents(const float* radiance, float dura
     to.noise_rate[k] = shot_noise_hz_ * (1.0F - (1.0F - kBrightNoise) * Min(mean_radiance, 1.0F));
     const float time_constants = to.cut_off[k] * duration_s;
     const float response = FastOneMinusExp(time_constants);
-    const float output1 = output0 + (input0 - output0) * response + (input1 - input0) * (1.0F - response / time_constants);
+    const float output1 =
+        output0 + (input0 - output0) * response + (input1 - input0) * (1.0F - response / time_constants);
     const float leaked = amplifier_from[k] + leak[k] * duration_s;
     const float budget = budget_from[k] - to.noise_rate[k] * duration_s;
     // At an extremum within the step the output equals the input, so that it stays within the input's range.
@@ -208,7 +210,8 @@ void EventSensor::FindEvents(const Step& step, std::size_t k, PixelRun* run, eve
     const double reset_level = signal.Evaluate(now) - amplifier;
     const double noise_at = noise_rate > 0.0 ? now + budget / noise_rate : kNever;
     const double end = std::min(noise_at, step.duration_s);
-    const auto crossing = signal.FirstCrossing(now, end, reset_level - threshold_off_[pixel], reset_level + threshold_on_[pixel]);
+    const auto crossing =
+        signal.FirstCrossing(now, end, reset_level - threshold_off_[pixel], reset_level + threshold_on_[pixel]);
     const double event_at = crossing ? crossing->t : end;
     budget -= noise_rate * (event_at - now);
     if (!crossing && noise_at > step.duration_s) {

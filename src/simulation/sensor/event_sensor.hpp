@@ -20,7 +20,8 @@ namespace evo::simulation {
 //   photoreceptor   L = log(radiance + dark_radiance),  dy/dt = 2 pi f (L - y),
 //                   f = bandwidth_hz * radiance, within [dark_bandwidth_hz, bandwidth_hz]
 //   amplifier       v = y(t) - y(t_reset) + leak * (t - t_reset)
-//   comparators     +1 event at v = threshold_on, -1 event at v = -threshold_off; shot noise events come at random times
+//   comparators     +1 event at v = threshold_on, -1 event at v = -threshold_off; shot noise events come at random
+//   times
 //                   with random polarity. The pixel is reset at the end of the refractory period that follows an event:
 //                   t_reset = t + refractory_s.
 //
@@ -37,9 +38,9 @@ class EventSensor {
 
   /// Advances the pixels of `tile` to time `t`, when they see `radiance` (row by row, >= 0); log radiance is linear in
   /// time between two calls. Appends the events since the last call to `events`: pixels row by row, each pixel's events
-  /// in order of time. Stamps are whole microseconds, rounded down, at most readout_row_s later than `t`. The first call
-  /// sets the state only. All calls must use the tiles of one partition of the sensor. Error (kInput) for radiance that
-  /// is negative or not finite, a tile outside the sensor or a time that does not advance.
+  /// in order of time. Stamps are whole microseconds, rounded down, at most readout_row_s later than `t`. The first
+  /// call sets the state only. All calls must use the tiles of one partition of the sensor. Error (kInput) for radiance
+  /// that is negative or not finite, a tile outside the sensor or a time that does not advance.
   void Advance(const Tile& tile, TimeNs t, std::span<const float> radiance, events::EventColumns* events);
 
  private:
@@ -84,9 +85,9 @@ class EventSensor {
   // Per pixel, row by row.
   std::vector<TimeNs> time_;  ///< of the last call, kept at the first pixel of each tile
   std::vector<float> radiance_;
-  std::vector<float> log_radiance_;       ///< L
-  std::vector<float> photoreceptor_;      ///< y
-  std::vector<float> amplifier_;          ///< v; NaN: refractory
+  std::vector<float> log_radiance_;   ///< L
+  std::vector<float> photoreceptor_;  ///< y
+  std::vector<float> amplifier_;      ///< v; NaN: refractory
   std::vector<TimeNs> refractory_until_;
   std::vector<float> threshold_on_;
   std::vector<float> threshold_off_;

@@ -44,7 +44,8 @@ double PhotoreceptorResponse::Derivative(double t) const {
   return leak_ + slope_ * response + cut_off_ * lag_ * (1.0 - response);
 }
 
-std::optional<PhotoreceptorResponse::Crossing> PhotoreceptorResponse::FirstCrossing(double from, double to, double low, double high) const {
+std::optional<PhotoreceptorResponse::Crossing> PhotoreceptorResponse::FirstCrossing(double from, double to, double low,
+                                                                                    double high) const {
   const bool has_extremum = extremum_ > from && extremum_ < to;
   double start = from;
   for (const double end : std::array{has_extremum ? extremum_ : to, to}) {
@@ -60,7 +61,8 @@ std::optional<PhotoreceptorResponse::Crossing> PhotoreceptorResponse::FirstCross
 double PhotoreceptorResponse::SolveCrossing(double from, double to, double level) const {
   const double at_from = Evaluate(from) - level;
   const double at_to = Evaluate(to) - level;
-  if (at_from * at_to >= 0.0) return std::abs(at_from) < std::abs(at_to) ? from : to;  // one of them is the root but for rounding
+  if (at_from * at_to >= 0.0)
+    return std::abs(at_from) < std::abs(at_to) ? from : to;  // one of them is the root but for rounding
   double t = from + (to - from) * at_from / (at_from - at_to);
   for (int i = 0; i < kMaxIterations; ++i) {
     const double error = Evaluate(t) - level;

@@ -70,7 +70,7 @@ void HouseFactory::AddFacade(const Site& site, int upper, int ground, int floors
   builder_.Add(site.corner + kFloorHeight * kUp, site.along, -kFloorHeight * kUp, material, outwards);
   material.texture = upper;
   material.texel_origin = {kFacadeCell * static_cast<double>(random->Index(kFacadeAxes)),
-                       kFacadeCell * static_cast<double>(random->Index(kFacadeFloors))};
+                           kFacadeCell * static_cast<double>(random->Index(kFacadeFloors))};
   material.texels.y() = floors * kFacadeCell;
   const double height = floors * kFloorHeight;
   const Eigen::Vector3d top = site.corner + (kFloorHeight + height) * kUp;

@@ -8,7 +8,7 @@ namespace evo::simulation {
 namespace {
 
 constexpr std::uint64_t kStream = 0x63726F7373;  // "cross"
-constexpr double kOverlap = 14.0;  // m that a side road extends beyond the junction's centre
+constexpr double kOverlap = 14.0;                // m that a side road extends beyond the junction's centre
 
 }  // namespace
 

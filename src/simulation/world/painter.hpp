@@ -9,8 +9,8 @@ namespace evo::simulation {
 
 /// Draws a texture that repeats: what leaves on one side enters on the other. Sizes in texels.
 ///
-/// Lines and ellipses are not OpenCV's: those do not repeat, and their edges cover other texels, which would change every
-/// simulated byte.
+/// Lines and ellipses are not OpenCV's: those do not repeat, and their edges cover other texels, which would change
+/// every simulated byte.
 class Painter {
  public:
   /// Sizes are powers of two. All texels start with the same reflectance and coverage.
@@ -32,7 +32,8 @@ class Painter {
   void CutHole(int x, int y, int width, int height);
 
   /// Adds value noise of `octaves` octaves. The first has cells of `cell_x` x `cell_y` texels (powers of two) and a
-  /// standard deviation of about `amplitude`; each further one has cells of half the size and `gain` times the amplitude.
+  /// standard deviation of about `amplitude`; each further one has cells of half the size and `gain` times the
+  /// amplitude.
   void Noise(Random& random, int cell_x, int cell_y, int octaves, double amplitude, double gain = 0.6);
   /// Adds white noise of the standard deviation `amplitude`.
   void Grain(Random& random, double amplitude);

@@ -20,24 +20,25 @@ constexpr double kMaxSlope = 0.3;         // the steepest streets there are have
 
 // "turns": a city block's right angles.
 constexpr int kTurns = 4;
-constexpr double kTurnRadius = 8.0;     // m
-constexpr double kTurnClothoid = 6.0;   // m
-constexpr double kAfterTurn = 10.0;     // m of road at least after a turn
+constexpr double kTurnRadius = 8.0;    // m
+constexpr double kTurnClothoid = 6.0;  // m
+constexpr double kAfterTurn = 10.0;    // m of road at least after a turn
 
 // "curved": a country road's bends.
-constexpr double kLeadIn = 15.0;        // m of straight road before the first bend
-constexpr double kMinRadius = 60.0;     // m
-constexpr double kMaxRadius = 300.0;    // m
+constexpr double kLeadIn = 15.0;          // m of straight road before the first bend
+constexpr double kMinRadius = 60.0;       // m
+constexpr double kMaxRadius = 300.0;      // m
 constexpr double kMaxBendLength = 120.0;  // m
-constexpr double kMaxHeading = 1.0;     // rad: the road cannot come back to itself
+constexpr double kMaxHeading = 1.0;       // rad: the road cannot come back to itself
 
-constexpr double kHillsStart = 10.0;    // m: hills grow from here, so that the run starts level,
-constexpr double kHillsFull = 50.0;     // m: to their full slope here
+constexpr double kHillsStart = 10.0;  // m: hills grow from here, so that the run starts level,
+constexpr double kHillsFull = 50.0;   // m: to their full slope here
 constexpr std::array<double, 3> kHillSlopeRatios = {0.5, 0.3, 0.2};  // of three sines; the sum is 1
 
 }  // namespace
 
-ReferenceLine::ReferenceLine(const std::string& shape, double length_m, double slope, std::uint64_t seed) : length_(length_m) {
+ReferenceLine::ReferenceLine(const std::string& shape, double length_m, double slope, std::uint64_t seed)
+    : length_(length_m) {
   if (!(length_m > 0.0 && length_m <= kMaxLength)) {
     throw Error(ErrorKind::kConfiguration, "a road's length must be above 0 and at most 100 km");
   }
@@ -53,8 +54,7 @@ ReferenceLine::ReferenceLine(const std::string& shape, double length_m, double s
   } else if (shape == "turns") {
     AddTurns(&random);
   } else {
-    throw Error(ErrorKind::kConfiguration,
-                "unknown shape of a road '" + shape + "'; choose straight, curved or turns");
+    throw Error(ErrorKind::kConfiguration, "unknown shape of a road '" + shape + "'; choose straight, curved or turns");
   }
   if (slope > 0.0) AddHills(slope, &random);
   IntegratePosition();
@@ -144,7 +144,8 @@ void ReferenceLine::IntegratePosition() {
 
 ReferenceLine::Point ReferenceLine::DirectionAt(double distance) const {
   const double s = std::clamp(distance, 0.0, end());
-  const Segment& segment = *(std::ranges::upper_bound(segments_.begin() + 1, segments_.end(), s, {}, &Segment::start) - 1);
+  const Segment& segment =
+      *(std::ranges::upper_bound(segments_.begin() + 1, segments_.end(), s, {}, &Segment::start) - 1);
   const double u = s - segment.start;
   const double rate = segment.length > 0.0 ? (segment.curvature_end - segment.curvature_start) / segment.length : 0.0;
   Point point;

@@ -9,12 +9,12 @@ namespace evo::simulation {
 namespace {
 
 constexpr std::uint64_t kStream = 0x7375726661636500;  // "surface"
-constexpr double kZebra = 3.6;           // m along the road
-constexpr double kMaxPieceLength = 8.0;  // m
-constexpr double kMaxPieceAngle = 0.03;  // rad from piece to piece: bends look smooth
-constexpr double kLayer = 0.0005;        // m: vertical distance of overlapping pieces in bends
-constexpr int kLaneTexels = 2048;        // length of the lanes' texture
-constexpr double kTexelsPerMetre = 100;  // of pavements and kerbs
+constexpr double kZebra = 3.6;                         // m along the road
+constexpr double kMaxPieceLength = 8.0;                // m
+constexpr double kMaxPieceAngle = 0.03;                // rad from piece to piece: bends look smooth
+constexpr double kLayer = 0.0005;                      // m: vertical distance of overlapping pieces in bends
+constexpr int kLaneTexels = 2048;                      // length of the lanes' texture
+constexpr double kTexelsPerMetre = 100;                // of pavements and kerbs
 
 struct Piece {
   double from = 0.0;
@@ -25,7 +25,8 @@ struct Piece {
 
 class RoadPaver {
  public:
-  explicit RoadPaver(const StreetContext& context) : plan_(context.plan), builder_(context.builder), random_(context.seed, kStream) {
+  explicit RoadPaver(const StreetContext& context)
+      : plan_(context.plan), builder_(context.builder), random_(context.seed, kStream) {
     for (int& lanes : lanes_) lanes = builder_.Add(PaintLanes(random_, plan_.layout(), kLaneTexels));
     asphalt_ = builder_.Add(PaintAsphalt(random_, 1024));
     zebra_ = builder_.Add(PaintZebra(random_, plan_.layout(), 512));
@@ -149,8 +150,9 @@ class RoadPaver {
       const bool before = std::abs(piece.to - junction.from) < 1e-6;
       if (!before && std::abs(piece.from - junction.to) > 1e-6) continue;
       const double s = before ? junction.from : junction.to;
-      builder_.Add(plan_.PointAt(s, inner, kKerbHeight), plan_.PointAt(s, outer, kKerbHeight) - plan_.PointAt(s, inner, kKerbHeight),
-                   down, material, (before ? 1.0 : -1.0) * plan_.Forward(s));
+      builder_.Add(plan_.PointAt(s, inner, kKerbHeight),
+                   plan_.PointAt(s, outer, kKerbHeight) - plan_.PointAt(s, inner, kKerbHeight), down, material,
+                   (before ? 1.0 : -1.0) * plan_.Forward(s));
     }
   }
 

@@ -3,15 +3,15 @@
 #include <vector>
 
 #include "evo/core/random.hpp"
-#include "simulation/world/world.hpp"
 #include "simulation/world/scene_builder.hpp"
 #include "simulation/world/textures.hpp"
+#include "simulation/world/world.hpp"
 
 namespace evo::simulation {
 
 namespace {
 
-constexpr std::uint64_t kStream = 0x726F6F6D;  // "room"
+constexpr std::uint64_t kStream = 0x726F6F6D;    // "room"
 const Eigen::Vector3d kHalfSize(2.0, 1.5, 2.5);  // m; the camera starts in the centre
 
 /// Adds the wall (floor, ceiling) on one side (-1 or 1) of an axis.

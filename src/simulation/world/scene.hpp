@@ -14,8 +14,8 @@ namespace evo::simulation {
 // truth: x right, y down, z forward. A level road lies at y = height of the camera. All surfaces are textured
 // parallelograms; trees consist of some with holes.
 
-/// The points origin + a * edge_u + b * edge_v for a, b in [0, 1], visible from both sides. Coordinates are those of the
-/// surface's body.
+/// The points origin + a * edge_u + b * edge_v for a, b in [0, 1], visible from both sides. Coordinates are those of
+/// the surface's body.
 struct Surface {
   Eigen::Vector3d origin;
   Eigen::Vector3d edge_u;

@@ -12,7 +12,7 @@ struct Material {
   int texture = 0;
   Eigen::Vector2d texel_origin = Eigen::Vector2d::Zero();
   Eigen::Vector2d texels = Eigen::Vector2d::Ones();
-  double tone = 1.0;  ///< factor of the texture's reflectance
+  double tone = 1.0;      ///< factor of the texture's reflectance
   double emission = 0.0;  ///< radiance
   int body = 0;
 };
@@ -20,7 +20,7 @@ struct Material {
 /// Directional sunlight and uniform skylight.
 struct Sun {
   Eigen::Vector3d towards = -Eigen::Vector3d::UnitY();  ///< unit vector
-  double ratio = 0.0;  ///< of sunlight in the light on a surface that faces the sun
+  double ratio = 0.0;                                   ///< of sunlight in the light on a surface that faces the sun
   /// Lambertian shading of a surface with this outward normal, at most 1.
   double DiffuseShade(const Eigen::Vector3d& normal) const;
 };

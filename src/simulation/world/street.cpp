@@ -18,7 +18,8 @@ Sun DrawSun(std::uint64_t seed, bool night) {
   Random random(seed, kSunStream);
   const double azimuth = random.Uniform(0.0, 2.0 * std::numbers::pi);
   const double elevation = random.Uniform(0.6, 1.1);
-  sun.towards = {std::cos(elevation) * std::cos(azimuth), -std::sin(elevation), std::cos(elevation) * std::sin(azimuth)};
+  sun.towards = {std::cos(elevation) * std::cos(azimuth), -std::sin(elevation),
+                 std::cos(elevation) * std::sin(azimuth)};
   sun.ratio = kSunRatio;
   return sun;
 }

@@ -38,8 +38,8 @@ void AddCrown(SceneBuilder* builder, const Eigen::Vector3d& centre, double size,
     const Eigen::Vector3d lean = Level(angle + 0.5 * std::numbers::pi);
     const Eigen::Vector3d down = size * (0.4 * random->Normal() * 0.5 * lean - kUp).normalized();
     const Eigen::Vector3d middle = centre + 0.08 * size * random->Normal() * lean;
-    builder->Add(middle - 0.5 * (across + down), across, down, builder->WholeTexture(texture, random->Uniform(0.7, 1.05)),
-                 lean);
+    builder->Add(middle - 0.5 * (across + down), across, down,
+                 builder->WholeTexture(texture, random->Uniform(0.7, 1.05)), lean);
   }
 }
 
@@ -98,8 +98,8 @@ void AddPoles(const StreetContext& context) {
     builder.Add(head - 0.35 * out - 0.15 * forward, 0.7 * out, 0.3 * forward, lamp, -kUp);
     if (sign < 0) continue;
     const Eigen::Vector3d right = plan.Right(s);
-    builder.Add(foot + 2.8 * kUp - 0.35 * right - 0.1 * forward, 0.7 * right, -0.7 * kUp, builder.WholeTexture(signs[sign]),
-                -forward);
+    builder.Add(foot + 2.8 * kUp - 0.35 * right - 0.1 * forward, 0.7 * right, -0.7 * kUp,
+                builder.WholeTexture(signs[sign]), -forward);
   }
 }
 

@@ -29,9 +29,7 @@ Eigen::Vector3d StreetPlan::Right(double distance) const {
   return {std::cos(heading), 0.0, -std::sin(heading)};
 }
 
-Eigen::Vector3d StreetPlan::Forward(double distance) const {
-  return ReferenceLine::Tangent(road_.PointAt(distance));
-}
+Eigen::Vector3d StreetPlan::Forward(double distance) const { return ReferenceLine::Tangent(road_.PointAt(distance)); }
 
 Eigen::Vector3d StreetPlan::PointAt(double distance, double lateral, double up) const {
   return road_.PointAt(distance).position + lateral * Right(distance) + Eigen::Vector3d(0.0, camera_height_ - up, 0.0);
@@ -44,7 +42,8 @@ void StreetPlan::AddJunction(double distance) {
   junction.to = distance + half;
   const auto turns_at = [&](double s) { return std::abs(Curvature(s)) > kTurnCurvature; };
   if (turns_at(distance)) {
-    while (junction.from > distance - kMaxTurnLength && std::abs(Curvature(junction.from)) > 1e-6) junction.from -= kStep;
+    while (junction.from > distance - kMaxTurnLength && std::abs(Curvature(junction.from)) > 1e-6)
+      junction.from -= kStep;
     while (junction.to < distance + kMaxTurnLength && std::abs(Curvature(junction.to)) > 1e-6) junction.to += kStep;
   }
   const double turn = Heading(junction.to) - Heading(junction.from);
@@ -54,7 +53,8 @@ void StreetPlan::AddJunction(double distance) {
   if (std::abs(turn) > 0.2) {
     // Intersection of the centre lines before and after the turn.
     const Eigen::Vector3d in = Forward(junction.from);
-    const Eigen::Vector3d to_exit = PointAt(junction.to, centre_line(), 0.0) - PointAt(junction.from, centre_line(), 0.0);
+    const Eigen::Vector3d to_exit =
+        PointAt(junction.to, centre_line(), 0.0) - PointAt(junction.from, centre_line(), 0.0);
     const Eigen::Vector3d across = Right(junction.to);
     const double ahead = to_exit.dot(across) / in.dot(across);
     junction.centre = PointAt(junction.from, centre_line(), 0.0) + ahead * in;

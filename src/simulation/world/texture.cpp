@@ -84,7 +84,8 @@ Texture::Sample Texture::LookupAtLevel(float u, float v, float mip_level) const 
   const auto last = static_cast<int>(levels_.size()) - 1;
   if (mip_level >= static_cast<float>(last)) return samples_.back();
   const int finer = static_cast<int>(mip_level);
-  return Interpolate(Bilinear(levels_[finer], u, v), Bilinear(levels_[finer + 1], u, v), mip_level - static_cast<float>(finer));
+  return Interpolate(Bilinear(levels_[finer], u, v), Bilinear(levels_[finer + 1], u, v),
+                     mip_level - static_cast<float>(finer));
 }
 
 Texel Texture::Lookup(double u, double v, double footprint) const {

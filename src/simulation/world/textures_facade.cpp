@@ -36,8 +36,8 @@ Painter MakeWallPainter(Random& random, int width, int height) {
   painter.Noise(random, 64, 128, 5, 0.015, 0.75);
   painter.Grain(random, 0.01);
   for (int i = 0; i < width / 64; ++i) {  // rain
-    painter.TintGradient(random.Index(width), random.Index(height), Between(random, 3, 12), Between(random, 40, 120), 0.8,
-                     1.0);
+    painter.TintGradient(random.Index(width), random.Index(height), Between(random, 3, 12), Between(random, 40, 120),
+                         0.8, 1.0);
   }
   return painter;
 }

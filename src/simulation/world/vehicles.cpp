@@ -62,7 +62,8 @@ class CarFactory {
     Material material = builder_.WholeTexture(texture, tone);
     material.body = body_;
     material.emission = emission;
-    builder_.Add(T_body_car_ * origin, T_body_car_.rotation() * u, T_body_car_.rotation() * v, material, T_body_car_.rotation() * outwards);
+    builder_.Add(T_body_car_ * origin, T_body_car_.rotation() * u, T_body_car_.rotation() * v, material,
+                 T_body_car_.rotation() * outwards);
   }
 
   /// Adds bonnet, wind screen, roof, rear window and boot along the outline of the side.
