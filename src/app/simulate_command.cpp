@@ -14,6 +14,8 @@
 #include "app/staged_folder.hpp"
 #include "evo/core/error.hpp"
 #include "evo/core/format.hpp"
+#include "evo/core/parallel.hpp"
+#include "evo/core/progress.hpp"
 #include "evo/simulation/simulate.hpp"
 #include "evo/simulation/simulated_run.hpp"
 

@@ -19,7 +19,7 @@ namespace evo::simulation {
 namespace {
 
 constexpr TimeNs kMicrosecond = 1000;
-constexpr TimeNs kBatch = 10'000'000;      // visible surfaces and image speeds hold for so long
+constexpr TimeNs kBatch = 10'000'000;      // 10 ms: visible sets and image speeds are found once per batch
 constexpr int kMaxRendersPerBatch = 1000;  // of a tile: 10 us, far below any sensor's time constant
 constexpr double kStepsPerFlicker = 8.0;   // of the sensor per period of the lamps: its low-pass sees a sine
 

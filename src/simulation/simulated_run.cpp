@@ -19,9 +19,8 @@ namespace evo::simulation {
 
 namespace {
 
-constexpr double kViewDistance =
-    250.0;                          // m of road beyond the end of the drive: the camera never sees the street's end
-constexpr double kMaxPixels = 4e6;  // four times the largest event camera, at some 150 bytes a pixel
+constexpr double kViewDistance = 250.0;  // m of road past the end: the camera never sees the street end
+constexpr double kMaxPixels = 4e6;       // four times the largest event camera, at some 150 bytes a pixel
 
 geometry::Calibration FindCalibration(const std::string& name) {
   if (name == "davis346") return geometry::MvsecDavis346();

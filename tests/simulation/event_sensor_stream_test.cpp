@@ -41,7 +41,7 @@ SortedEvents DefaultSensorEvents(std::uint64_t seed, int tile, bool backwards, d
   return sorted;
 }
 
-TEST(EventSensor, SizeAndOrderOfTheTilesDoNotMatter) {
+TEST(EventSensor, EventsDoNotDependOnSizeAndOrderOfTheTiles) {
   const SortedEvents expected = DefaultSensorEvents(3, 75, false);
   ASSERT_GT(expected.size(), 10'000U);
   EXPECT_EQ(DefaultSensorEvents(3, 75, false), expected);

@@ -22,7 +22,7 @@ using test::Show;
 constexpr TimeNs kMs = 1'000'000;
 constexpr TimeNs kUs = 1'000;
 
-TEST(EventSensor, RampCrossesTheThresholdsWhenTheClosedFormSays) {
+TEST(EventSensor, RampCrossesTheThresholdsAtTheClosedFormsTimes) {
   const SensorOptions options = IdealSensor(0.25, 0.16);
   for (const double slope : {1.3, -1.3}) {
     Show show(1, 1, options);
@@ -37,7 +37,7 @@ TEST(EventSensor, RampCrossesTheThresholdsWhenTheClosedFormSays) {
   }
 }
 
-TEST(EventSensor, MovingEdgeFiresWhereItIs) {
+TEST(EventSensor, MovingEdgeFiresAtItsPosition) {
   // An edge of 4 px width and contrast 1.1 goes over the pixels at 1 px/ms.
   const SensorOptions options = IdealSensor(0.2, 0.2);
   Show show(40, 2, options);
@@ -86,7 +86,7 @@ TEST(EventSensor, StepResponseIsThatOfALowPass) {
   }
 }
 
-TEST(EventSensor, SeesAPeakWithinAStep) {
+TEST(EventSensor, FindsAnExtremumWithinAStep) {
   // y lags behind L that falls: it rises until it meets L, at t* with exp(-w t*) = s / (w C).
   SensorOptions options = IdealSensor(0.3, 5.0);
   options.bandwidth_hz = options.dark_bandwidth_hz = 50.0;
@@ -118,7 +118,7 @@ double Wander(int x, int y, double t) {
   return -1.0 + (1.0 - share) * value(knot) + share * value(knot + 1);
 }
 
-TEST(EventSensor, CutOfTheStepsDoesNotMatter) {
+TEST(EventSensor, EventsDoNotDependOnTheSteps) {
   SensorOptions options = IdealSensor(0.3, 0.2);
   options.bandwidth_hz = options.dark_bandwidth_hz = 60.0;
   options.refractory_s = 0.0003;
@@ -155,7 +155,7 @@ std::vector<double> MeasureThresholds(const SensorOptions& options, int size, do
   return thresholds;
 }
 
-TEST(EventSensor, IntegratedEventsGiveBackTheLogChange) {
+TEST(EventSensor, IntegratedEventsEqualTheLogChange) {
   SensorOptions options = IdealSensor(0.3, 0.2);
   options.threshold_spread = 0.03;
   constexpr int kSize = 24;
@@ -183,7 +183,7 @@ TEST(EventSensor, IntegratedEventsGiveBackTheLogChange) {
   EXPECT_NEAR(std::sqrt(variance), 0.03, 0.003);
 }
 
-TEST(EventSensor, BlindPixelStartsAgainFromWhatItSees) {
+TEST(EventSensor, ResetsAtTheEndOfTheRefractoryPeriod) {
   SensorOptions options = IdealSensor(0.2, 0.2);
   options.refractory_s = 0.013;
   Show show(1, 1, options);
@@ -194,7 +194,7 @@ TEST(EventSensor, BlindPixelStartsAgainFromWhatItSees) {
   }
 }
 
-TEST(EventSensor, SymmetricStimulusGivesPolaritiesAsTheThresholdsAre) {
+TEST(EventSensor, SymmetricStimulusGivesTheThresholdsRatioOfPolarities) {
   const SensorOptions options = IdealSensor(0.3, 0.1);
   Show show(4, 4, options);
   show.Run(0, 5000 * kMs, kMs, [&](int x, int y, double t) {

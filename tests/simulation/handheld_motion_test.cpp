@@ -11,7 +11,7 @@
 namespace evo::simulation {
 namespace {
 
-TEST(HandheldMotion, StartsAtRestAndHasItsSize) {
+TEST(HandheldMotion, StartsAtRestAndHasItsDeviation) {
   HandheldOptions options;
   options.duration_s = 400.0;
   const PoseFunction motion = MakeHandheldMotion(options, 5);

@@ -161,7 +161,7 @@ TEST(Renderer, AFarCheckerboardFadesToItsMean) {
   }
 }
 
-TEST(Renderer, TexturesLieWhereTheyAreSaidTo) {
+TEST(Renderer, TexturesFollowTheirCoordinates) {
   std::vector<Texel> half(2, {.reflectance = 0.2F});
   half[1].reflectance = 0.8F;
   Scene scene = Empty();
@@ -181,7 +181,7 @@ TEST(Renderer, TexturesLieWhereTheyAreSaidTo) {
   EXPECT_NEAR(at(0.0), 0.5, 0.01);
 }
 
-TEST(Renderer, HolesAreLookedThroughFromNearToFar) {
+TEST(Renderer, HolesAreCompositedFromFrontToBack) {
   Scene scene = Empty();
   scene.textures.push_back(Plain(0.8F, 0.25F));
   scene.textures.push_back(Plain(0.1F, 0.6F));

@@ -75,7 +75,7 @@ class MovingEdge : public ::testing::TestWithParam<std::pair<float, float>> {
   SimulationOptions options = Fine();
 };
 
-TEST_P(MovingEdge, FiresAtTheTimesAndAsOftenAsTheClosedFormSays) {
+TEST_P(MovingEdge, FiresAtTheClosedFormsTimesAndCounts) {
   const double before = GetParam().first;
   const double after = GetParam().second;
   const SensorOptions sensor = IdealSensor(0.3, 0.2);
@@ -108,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(BrighterAndDarker, MovingEdge,
 
 /// Walls and moving things all round, a camera that moves and turns: for every pixel the events add up to the change of
 /// what the renderer shows there, but for less than a threshold.
-TEST(SensorChain, IntegratedEventsGiveBackTheLogChangeOfTheFrames) {
+TEST(SensorChain, IntegratedEventsEqualTheLogChangeOfTheFrames) {
   const Scene scene = [] {
     Scene random = RandomScene(60, 11);
     Random grey(4);

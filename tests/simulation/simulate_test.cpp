@@ -189,7 +189,7 @@ TEST_F(SimulateTest, LampsFlickerInFullBetweenFewRenders) {
   }
 }
 
-TEST_F(SimulateTest, FewRendersUnderLampsShowWhatManyDo) {
+TEST_F(SimulateTest, FewRendersUnderLampsGiveTheEventsOfMany) {
   scene.lighting = LampsAlone();
   motion = [](TimeNs t) {
     return geometry::SE3(Eigen::Quaterniond::Identity(), {3.0 * ToSeconds(t), 0.0, 0.0});

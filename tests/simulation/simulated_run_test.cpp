@@ -162,7 +162,7 @@ TEST(SimulatedRun, RejectsOptionsThatDoNotFitTogether) {
   EXPECT_NE(Refusal(options, ErrorKind::kInput).find("no_such_camera.yaml"), std::string::npos);
 }
 
-TEST(SimulatedRun, FollowsAMotionFromAFile) {
+TEST(SimulatedRun, FollowsATrajectoryFile) {
   const fs::path path = fs::temp_directory_path() / ("evo_motion_" + std::to_string(::getpid()) + ".txt");
   std::ofstream(path) << "5.0 1 0 0 0 0 0 1\n5.5 1 0 1 0 0 0 1\n6.0 1 0 2 0 0 0 1\n";
   SceneOptions options;

@@ -13,7 +13,7 @@ namespace {
 const geometry::SE3 kPose(geometry::so3::Exp({0.05, -0.1, 0.2}), {0.3, -0.2, 0.5});
 constexpr TimeNs kTime = 40'000'000;
 
-TEST(DepthCamera, SeesWhatEachRayMeets) {
+TEST(DepthCamera, AgreesWithOneRayAtATime) {
   const Scene scene = RandomScene(150, 6);
   for (const geometry::Camera& camera : {Davis346(), geometry::Camera(geometry::Rectified(Davis346().calibration()))}) {
     ThreadPool pool(2);
@@ -85,7 +85,7 @@ TEST_F(StaticFlowTest, OfAStepForwardExpandsFromTheAxis) {
   EXPECT_NEAR(Down(map, 16, 1), -2.0, 1e-9);
 }
 
-TEST_F(StaticFlowTest, OfATurnDoesNotAskForDepth) {
+TEST_F(StaticFlowTest, OfARotationDoesNotDependOnDepth) {
   depth.depth[0] = 400.0;
   const geometry::SE3 turn(geometry::so3::Exp({0.0, 0.0, 0.01}), Eigen::Vector3d::Zero());
   const events::FlowMap map = Flow(turn);
@@ -94,7 +94,7 @@ TEST_F(StaticFlowTest, OfATurnDoesNotAskForDepth) {
   EXPECT_NEAR(Down(map, 0, 0), place.y(), 1e-9);
 }
 
-TEST_F(StaticFlowTest, IsUnknownWhereTheDepthIsOrThePointIsPassed) {
+TEST_F(StaticFlowTest, IsUnknownForUnknownDepthAndForPointsBehindTheCamera) {
   depth.depth[0] = std::nan("");
   depth.depth[1] = 0.5;
   const events::FlowMap map = Flow(geometry::SE3(Eigen::Quaterniond::Identity(), {0.0, 0.0, -1.0}));

@@ -37,7 +37,7 @@ TEST(VehicleMotion, CruisesAtConstantSpeed) {
   EXPECT_NEAR(SpeedAt(motion, 59.99), 7.5, 1e-6) << "no braking at the end of the run";
 }
 
-TEST(VehicleMotion, StandsFirstThenSpeedsUpAtTheGivenRate) {
+TEST(VehicleMotion, StartsAtRestThenAcceleratesAtItsLimit) {
   const VehicleMotion motion = MakeVehicleMotion(ReferenceLine("straight", 600.0, 0.0, 1), Quiet(), 1);
   EXPECT_EQ(motion.distance_m(FromSeconds(1.0)), 0.0);
   EXPECT_GT(motion.distance_m(FromSeconds(1.1)), 0.0);
@@ -122,7 +122,7 @@ TEST(VehicleMotion, CameraPitchLooksDown) {
   EXPECT_NEAR(motion.T_world_cam(FromSeconds(10.0)).translation().y(), 0.0, 1e-12) << "drives level all the same";
 }
 
-TEST(VehicleMotion, BumpHasItsPeaksThenDiesAway) {
+TEST(VehicleMotion, BumpHasItsPeaksAndDecays) {
   VehicleOptions options = Quiet();
   options.bumps_at_s = "30";
   const VehicleMotion motion = MakeVehicleMotion(ReferenceLine("straight", 600.0, 0.0, 1), options, 1);
@@ -144,7 +144,7 @@ TEST(VehicleMotion, BumpHasItsPeaksThenDiesAway) {
   EXPECT_LT(std::abs(motion.T_world_cam(FromSeconds(32.99)).translation().y()), 1e-6);
 }
 
-TEST(VehicleMotion, BumpsShakeOnlyACarThatMoves) {
+TEST(VehicleMotion, BumpsActOnlyOnAMovingCar) {
   VehicleOptions options = Quiet();
   options.bumps_at_s = "2";
   options.start_at_rest_s = 5.0;
@@ -167,7 +167,7 @@ TEST(VehicleMotion, VelocityIsContinuousThroughBumpsTurnsAndVibration) {
   EXPECT_LT(quiet.angular, 0.002 * 0.8) << "into a clothoid at 5 m/s";
 }
 
-TEST(VehicleMotion, VibrationHasItsSizeAndIsSmallAtRest) {
+TEST(VehicleMotion, VibrationHasItsDeviationAndIsSmallAtRest) {
   VehicleOptions options;
   options.start_at_rest_s = 20.0;
   const VehicleMotion motion = MakeVehicleMotion(ReferenceLine("straight", 600.0, 0.0, 1), options, 3);

@@ -113,7 +113,7 @@ TEST(World, TheRoadIsUnderTheCamerasWholePath) {
 }
 
 // Rays across and along the camera's car, from knee to roof: nothing that stands still is in its way.
-TEST(World, NothingStaticStandsInTheCamerasWay) {
+TEST(World, NothingStaticLiesInTheCamerasPath) {
   for (const auto* name : {"driving_day.yaml", "turns.yaml", "highway.yaml"}) {
     for (const int seed : {1, 2}) {
       const SimulatedRun run = MakeRun(Load(name, seed));

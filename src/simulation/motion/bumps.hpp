@@ -10,8 +10,7 @@ namespace evo::simulation {
 /// empty text. nullopt for another text.
 std::optional<std::vector<double>> ParseBumpTimes(std::string_view text, double duration_s);
 
-/// The response is below 1e-5 of its peak so long after a bump, s.
-inline constexpr double kBumpDuration = 3.0;
+inline constexpr double kBumpDuration = 3.0;  // s, after which the response is below 1e-5 of its peak
 
 /// Response of a car's sprung mass `t` s after a short bump: a damped oscillation with a smooth onset.
 double BumpResponse(double t);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kMinInverseDepth = 1e-6;  // 1/m: 1000 km away; beyond it, a texture coordinate has no precision left
 constexpr double kEdgeOn = 1e-9;           // m: the camera is this near to the surface's plane
-constexpr double kMinDeterminant = 1e-30;  // smallest normal float and less have no logarithm
+constexpr double kMinDeterminant = 1e-30;  // FastLog2 needs a normal float
 constexpr float kFinestLevel = -50.0F;     // below the finest mip level, whatever is added
 
 /// The largest multiple of `period` below the texture coordinate along `ray`.

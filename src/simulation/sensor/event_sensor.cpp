@@ -20,7 +20,7 @@ constexpr float kBrightNoise = 0.25F;   // shot noise rate at radiance 1 over th
 constexpr float kMaxRadiance = 1e30F;   // FastLog still holds after dark_radiance is added
 constexpr TimeNs kNotStarted = std::numeric_limits<TimeNs>::min();
 constexpr TimeNs kMicrosecond = 1000;
-constexpr float kRefractory = std::numeric_limits<float>::quiet_NaN();
+constexpr float kRefractory = std::numeric_limits<float>::quiet_NaN();  // amplifier_ during the refractory period
 constexpr float kNever = std::numeric_limits<float>::infinity();
 
 // By value, unlike std::max and std::min: loops become vector code.
