@@ -13,13 +13,13 @@
 #include "evo/events/tracks.hpp"
 #include "evo/geometry/camera.hpp"
 #include "evo/tracking/tracker_options.hpp"
-#include "tracking/motion/lens_grid.hpp"
+#include "tracking/motion/jacobian_table.hpp"
 #include "tracking/smoothing/observed_window.hpp"
 
 namespace evo::tracking {
 
 /// Holds what a tracker sees until it is final, some ten seconds, and passes it on then in the same order: with shake
-/// given back where `options.restore_shake` asks for it (see RestoreShake), and without the observations of features
+/// given back where `options.rotation_spline` asks for it (see RestoreShake), and without the observations of features
 /// that were withdrawn or seen in one frame only.
 class TrackBuffer {
  public:
@@ -44,7 +44,7 @@ class TrackBuffer {
   std::size_t IndexOf(TimeNs t) const;
 
   geometry::Camera camera_;
-  LensGrid lens_;
+  JacobianTable lens_;
   bool restore_shake_;
   ThreadPool* pool_;
   events::TrackSink sink_;
