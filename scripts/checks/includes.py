@@ -52,7 +52,8 @@ def _unused(source: Source, by_path: dict[str, Source]) -> list[str]:
     problems = []
     for include in source.includes():
         header = by_path.get(include.path)
-        if header is None or Path(include.path).stem == source.path.stem:
+        tested = source.path.stem.removesuffix("_test")
+        if header is None or Path(include.path).stem in (source.path.stem, tested):
             continue
         if not declared(header.code()) & used:
             problems.append(f'{source.name}:{include.line}: nothing of "{include.path}" is used')

@@ -23,14 +23,15 @@ MatchedTrajectory BuildMatchedTrajectory(std::span<const PosePair> pairs, const 
   MatchedTrajectory trajectory;
   double distance = 0.0;
   for (const auto& pair : pairs) {
-    const geometry::SE3 aligned = similarity * pair.T_world_cam_estimate;
-    const geometry::SE3& truth = pair.T_world_cam_truth;
-    if (!trajectory.truth.empty()) distance += (truth.translation() - trajectory.truth.back()).norm();
+    const geometry::SE3 T_world_cam_aligned = similarity * pair.T_world_cam_estimate;
+    const geometry::SE3& T_world_cam_truth = pair.T_world_cam_truth;
+    if (!trajectory.truth.empty()) distance += (T_world_cam_truth.translation() - trajectory.truth.back()).norm();
     trajectory.t.push_back(pair.t_truth);
     trajectory.distance.push_back(distance);
-    trajectory.truth.push_back(truth.translation());
-    trajectory.estimate.push_back(aligned.translation());
-    trajectory.rotation_error.push_back((aligned.rotation() * truth.rotation().conjugate()).normalized());
+    trajectory.truth.push_back(T_world_cam_truth.translation());
+    trajectory.estimate.push_back(T_world_cam_aligned.translation());
+    trajectory.rotation_error.push_back(
+        (T_world_cam_aligned.rotation() * T_world_cam_truth.rotation().conjugate()).normalized());
   }
   return trajectory;
 }

@@ -32,11 +32,11 @@ struct NormalizedErrors {
 void Append(std::span<const PairWithCovariance> poses, const PairWithCovariance& origin, bool fit_scale,
             NormalizedErrors* errors) {
   // The covariances are given in the axes of the estimate's world frame.
-  const geometry::SE3 T_estimate_truth = origin.pair.T_world_cam_estimate * origin.pair.T_world_cam_truth.Inverse();
+  const geometry::SE3 T_estimate_world = origin.pair.T_world_cam_estimate * origin.pair.T_world_cam_truth.Inverse();
   const Eigen::Vector3d p_origin = origin.pair.T_world_cam_estimate.translation();
   double products = 0.0, squares = 0.0;
   for (const auto& [pair, covariance] : poses) {
-    const Eigen::Vector3d path = (T_estimate_truth * pair.T_world_cam_truth).translation() - p_origin;
+    const Eigen::Vector3d path = (T_estimate_world * pair.T_world_cam_truth).translation() - p_origin;
     products += path.dot(pair.T_world_cam_estimate.translation() - p_origin);
     squares += path.squaredNorm();
   }
@@ -44,10 +44,11 @@ void Append(std::span<const PairWithCovariance> poses, const PairWithCovariance&
   for (const auto& pose : poses) {
     if (pose.is_origin()) continue;
     const auto& [pair, covariance] = pose;
-    const geometry::SE3 truth = T_estimate_truth * pair.T_world_cam_truth;
+    const geometry::SE3 T_estimate_cam_truth = T_estimate_world * pair.T_world_cam_truth;
     geometry::Vector6d error;
-    error << pair.T_world_cam_estimate.translation() - p_origin - scale * (truth.translation() - p_origin),
-        geometry::so3::Log(pair.T_world_cam_estimate.rotation() * truth.rotation().conjugate());
+    error << pair.T_world_cam_estimate.translation() - p_origin -
+                 scale * (T_estimate_cam_truth.translation() - p_origin),
+        geometry::so3::Log(pair.T_world_cam_estimate.rotation() * T_estimate_cam_truth.rotation().conjugate());
     errors->translation.push_back(NormalizedSquaredError<3>(error.head<3>(), covariance.topLeftCorner<3, 3>()));
     errors->rotation.push_back(NormalizedSquaredError<3>(error.tail<3>(), covariance.bottomRightCorner<3, 3>()));
     errors->pose.push_back(NormalizedSquaredError<6>(error, covariance));

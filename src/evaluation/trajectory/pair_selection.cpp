@@ -20,8 +20,8 @@ std::vector<double> StepLengths(std::span<const geometry::StampedPose> poses, De
   std::vector<double> steps;
   steps.reserve(poses.size());
   for (std::size_t i = 1; i < poses.size(); ++i) {
-    const geometry::SE3& before = poses[i - 1].T_world_cam;
-    const geometry::SE3& after = poses[i].T_world_cam;
+    const geometry::SE3& T_world_cam_before = poses[i - 1].T_world_cam;
+    const geometry::SE3& T_world_cam_after = poses[i].T_world_cam;
     switch (unit) {
       case DeltaUnit::kFrames:
         steps.push_back(1.0);
@@ -30,10 +30,11 @@ std::vector<double> StepLengths(std::span<const geometry::StampedPose> poses, De
         steps.push_back(ToSeconds(poses[i].t - poses[i - 1].t));
         break;
       case DeltaUnit::kMetres:
-        steps.push_back((after.translation() - before.translation()).norm());
+        steps.push_back((T_world_cam_after.translation() - T_world_cam_before.translation()).norm());
         break;
       default:
-        steps.push_back(geometry::so3::Log(before.rotation().conjugate() * after.rotation()).norm());
+        steps.push_back(
+            geometry::so3::Log(T_world_cam_before.rotation().conjugate() * T_world_cam_after.rotation()).norm());
     }
   }
   return steps;

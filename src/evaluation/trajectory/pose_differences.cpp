@@ -44,10 +44,11 @@ std::vector<double> RelationErrors(const PoseDifferences& differences, PoseRelat
 PoseDifferences AbsoluteDifferences(std::span<const PosePair> pairs) {
   PoseDifferences differences;
   for (const auto& pair : pairs) {
-    const geometry::SE3& truth = pair.T_world_cam_truth;
-    const geometry::SE3& estimate = pair.T_world_cam_estimate;
-    differences.translation.push_back((estimate.translation() - truth.translation()).norm());
-    differences.rotation.push_back(geometry::so3::Log(truth.rotation().conjugate() * estimate.rotation()).norm());
+    const geometry::SE3& T_world_cam_truth = pair.T_world_cam_truth;
+    const geometry::SE3& T_world_cam_estimate = pair.T_world_cam_estimate;
+    differences.translation.push_back((T_world_cam_estimate.translation() - T_world_cam_truth.translation()).norm());
+    differences.rotation.push_back(
+        geometry::so3::Log(T_world_cam_truth.rotation().conjugate() * T_world_cam_estimate.rotation()).norm());
   }
   return differences;
 }

@@ -12,17 +12,20 @@
 #include "evo/core/error.hpp"
 
 namespace evo::evaluation {
+
 namespace {
+
 PoseDifferences RelativeDifferences(std::span<const PosePair> pairs, std::span<const IndexPair> motions) {
   PoseDifferences differences;
   for (const auto& [i, j] : motions) {
-    const geometry::SE3 truth = pairs[i].T_world_cam_truth.Inverse() * pairs[j].T_world_cam_truth;
-    const geometry::SE3 estimate = pairs[i].T_world_cam_estimate.Inverse() * pairs[j].T_world_cam_estimate;
-    const double distance = truth.translation().norm();
+    const geometry::SE3 T_i_j_truth = pairs[i].T_world_cam_truth.Inverse() * pairs[j].T_world_cam_truth;
+    const geometry::SE3 T_i_j_estimate = pairs[i].T_world_cam_estimate.Inverse() * pairs[j].T_world_cam_estimate;
+    const double distance = T_i_j_truth.translation().norm();
     // The true rotation does not change the length of the difference.
-    differences.translation.push_back((estimate.translation() - truth.translation()).norm());
-    differences.rotation.push_back(geometry::so3::Log(truth.rotation().conjugate() * estimate.rotation()).norm());
-    differences.point_distance.push_back(std::abs(estimate.translation().norm() - distance));
+    differences.translation.push_back((T_i_j_estimate.translation() - T_i_j_truth.translation()).norm());
+    differences.rotation.push_back(
+        geometry::so3::Log(T_i_j_truth.rotation().conjugate() * T_i_j_estimate.rotation()).norm());
+    differences.point_distance.push_back(std::abs(T_i_j_estimate.translation().norm() - distance));
     differences.true_distance.push_back(distance);
   }
   return differences;

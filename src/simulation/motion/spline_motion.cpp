@@ -27,7 +27,7 @@ struct Cubic {
 struct Segment {
   TimeNs start = 0;
   double seconds = 0.0;
-  geometry::SE3 first;
+  geometry::SE3 T_start_first;
   Cubic translation;
   Cubic rotation;
 };
@@ -100,8 +100,8 @@ PoseFunction MakeSplineMotion(const geometry::Trajectory& trajectory) {
     const auto next = std::ranges::upper_bound(segments->begin() + 1, segments->end(), t, {}, &Segment::start);
     const Segment& segment = *(next - 1);
     const double u = ToSeconds(t - segment.start) / segment.seconds;
-    return {segment.first.rotation() * geometry::so3::Exp(segment.rotation.Evaluate(u)),
-            segment.first.translation() + segment.translation.Evaluate(u)};
+    return {segment.T_start_first.rotation() * geometry::so3::Exp(segment.rotation.Evaluate(u)),
+            segment.T_start_first.translation() + segment.translation.Evaluate(u)};
   };
 }
 

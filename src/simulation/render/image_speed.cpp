@@ -88,12 +88,12 @@ double Renderer::ImageSpeed(const Tile& tile, const VisibleSet& visible, TimeNs 
     jacobians[i] = J_pixel_normalized(pixels[i][0], pixels[i][1]);
     min_focal_px = std::min(min_focal_px, jacobians[i].colwise().norm().minCoeff());
   }
-  const auto max_displacement_px = [&](const Range& inverse_depths, const geometry::SE3& motion) {
-    const Eigen::Matrix3d rotation = motion.RotationMatrix();
+  const auto max_displacement_px = [&](const Range& inverse_depths, const geometry::SE3& T_to_from) {
+    const Eigen::Matrix3d rotation = T_to_from.RotationMatrix();
     double max = 0.0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       for (const double w : {inverse_depths.low, inverse_depths.high}) {
-        max = std::max(max, (jacobians[i] * Displacement(rays[i], w, rotation, motion.translation())).norm());
+        max = std::max(max, (jacobians[i] * Displacement(rays[i], w, rotation, T_to_from.translation())).norm());
       }
     }
     return max;
@@ -105,17 +105,17 @@ double Renderer::ImageSpeed(const Tile& tile, const VisibleSet& visible, TimeNs 
   SurfaceProjector before(scene_, from, T_world_cam_from);
   SurfaceProjector after(scene_, to, T_world_cam_to);
   for (const int index : visible.surfaces) {
-    const geometry::SE3 motion = after.T_cam_body(index) * before.T_cam_body(index).Inverse();
+    const geometry::SE3 T_to_from_body = after.T_cam_body(index) * before.T_cam_body(index).Inverse();
     for (const bool forward : {true, false}) {
       // A point that the tile shows at some time is at most half of its displacement outside the tile at one end.
       SurfaceProjector& projector = forward ? before : after;
-      const geometry::SE3 directed_motion = forward ? motion : motion.Inverse();
+      const geometry::SE3 T_end_begin = forward ? T_to_from_body : T_to_from_body.Inverse();
       ProjectedSurface projected;
       RayFrustum widened = Widened(frustum, kMarginPx / min_focal_px);
       for (int pass = 0; pass < 2; ++pass) {
         if (!projector.Project(index, widened, &projected)) break;
         const Range range = InverseDepths(scene_.surfaces[index], projected, projector.T_cam_body(index), widened);
-        const double displacement = max_displacement_px(range, directed_motion);
+        const double displacement = max_displacement_px(range, T_end_begin);
         if (pass == 1) max_px = std::max(max_px, displacement);
         widened = Widened(frustum, (0.5 * displacement + kMarginPx) / min_focal_px);
       }

@@ -43,9 +43,9 @@ const geometry::SE3& SurfaceProjector::T_cam_body(int surface) {
 
 bool SurfaceProjector::Project(int surface, const RayFrustum& rays, ProjectedSurface* projected) {
   const Surface& s = scene_.surfaces[surface];
-  const geometry::SE3& pose = T_cam_body(surface);
-  const Eigen::Matrix3d R_cam_body = pose.RotationMatrix();
-  const Vector3d origin = pose * s.origin;
+  const geometry::SE3& T_cam_surface = T_cam_body(surface);
+  const Eigen::Matrix3d R_cam_body = T_cam_surface.RotationMatrix();
+  const Vector3d origin = T_cam_surface * s.origin;
   const Vector3d edge_u = R_cam_body * s.edge_u;
   const Vector3d edge_v = R_cam_body * s.edge_v;
   const Vector3d n = edge_u.cross(edge_v);

@@ -8,7 +8,6 @@
 #include "evo/core/random.hpp"
 #include "simulation/world/scene_builder.hpp"
 #include "simulation/world/textures.hpp"
-#include "simulation/world/world.hpp"
 
 namespace evo::simulation {
 
