@@ -42,7 +42,7 @@ KltTracker::KltTracker(int width, int height, const TrackerOptions& options, Thr
 
 cv::Mat KltTracker::EventImage(const events::EventHistory& history, TimeNs t) const {
   cv::Mat image = cv::Mat::zeros(history.height(), history.width(), CV_32F);
-  const TimeNs newest = history.BeginOfNewest(t - before(), t, static_cast<std::size_t>(options_.klt.events));
+  const TimeNs newest = history.NewestWindowBegin(t - before(), t, static_cast<std::size_t>(options_.klt.events));
   history.ForEachBetween(std::max(newest, t - before()), t,
                          [&](int x, int y, TimeNs, std::int8_t) { image.at<float>(y, x) += 1.0f; });
   return image;
