@@ -19,8 +19,7 @@ TimeNs HalfWindow(const Eigen::Vector2d& flow, double motion_px, const TrackerOp
 
 TimeNs FeatureHalfWindow(const Eigen::Vector2d& flow, const EgoMotion& ego_motion, const TrackerOptions& options) {
   const TimeNs by_motion = HalfWindow(flow, options.window_motion_px, options);
-  const double acceleration_px_s2 =
-      ego_motion.jacobians().focal_px() * ego_motion.typical_angular_acceleration();
+  const double acceleration_px_s2 = ego_motion.jacobians().focal_px() * ego_motion.typical_angular_acceleration();
   const double straight_s =
       std::sqrt(2.0 * options.window_curvature_px / std::max(acceleration_px_s2, kMinAccelerationPxS2));
   return std::min(by_motion, FromSeconds(std::max(straight_s, 0.5 * options.min_window_s)));

@@ -11,9 +11,9 @@ namespace evo::tracking {
 
 namespace {
 
-constexpr int kCoarseIterations = 6;    // bring a feature within the reach of the fine association
-constexpr int kEstablishedFrames = 5;   // a younger feature must show itself in every frame
-constexpr double kFlowGain = 0.28;      // typical ratio of the predicted flow's error that a window corrects
+constexpr int kCoarseIterations = 6;   // bring a feature within the reach of the fine association
+constexpr int kEstablishedFrames = 5;  // a younger feature must show itself in every frame
+constexpr double kFlowGain = 0.28;     // typical ratio of the predicted flow's error that a window corrects
 
 }  // namespace
 
@@ -87,10 +87,10 @@ bool FeatureAligner::Fit(const TrackedFeature& feature, Association association,
   thread_local AssociationTable table;
   const auto self_bias = [&] { return table.ComputeSelfBias(histogram, motion.linear, radius); };
   const auto align = [&](const SelfBias& bias, int iterations, bool with_linear) {
-    return AlignToTemplate(alignment->events, table, histogram.planes(),
-                           {iterations, radius, ToSeconds(alignment->half_window), options_.flow_prior,
-                            options_.affine_prior, bias},
-                           with_linear, &motion);
+    return AlignToTemplate(
+        alignment->events, table, histogram.planes(),
+        {iterations, radius, ToSeconds(alignment->half_window), options_.flow_prior, options_.affine_prior, bias},
+        with_linear, &motion);
   };
   if (association == Association::kCoarseToFine) {
     table.Build(histogram, options_.coarse_sigma_px, options_.outlier_density_ratio);

@@ -7,13 +7,13 @@ namespace evo::tracking {
 
 namespace {
 
-constexpr std::size_t kChunk = 4;               // features that a thread takes at a time: one is too short a task
-constexpr double kMinRotationPx = 0.2;          // the alignment itself follows a smaller unpredicted motion
-constexpr int kRotationPasses = 2;              // the first may be misled by features that took a neighbour's pattern
-constexpr int kClassificationFrames = 12;       // of evidence, until which noise dominates an outlier score
-constexpr double kMinComparedFlowPxS = 4.0;     // limits the change of shape over the flow of a slow feature
-constexpr double kRestingFlowDecay = 0.9;       // of a feature without events, per frame
-constexpr int kGradientInterval = 2;            // frames; the fit to the neighbours is costly and changes slowly
+constexpr std::size_t kChunk = 4;            // features that a thread takes at a time: one is too short a task
+constexpr double kMinRotationPx = 0.2;       // the alignment itself follows a smaller unpredicted motion
+constexpr int kRotationPasses = 2;           // the first may be misled by features that took a neighbour's pattern
+constexpr int kClassificationFrames = 12;    // of evidence, until which noise dominates an outlier score
+constexpr double kMinComparedFlowPxS = 4.0;  // limits the change of shape over the flow of a slow feature
+constexpr double kRestingFlowDecay = 0.9;    // of a feature without events, per frame
+constexpr int kGradientInterval = 2;         // frames; the fit to the neighbours is costly and changes slowly
 
 }  // namespace
 

@@ -14,8 +14,7 @@ constexpr double kMaxGradientPerFlow = 1e-3;  // 1/px^2; a steeper plane is seen
 
 void SurfaceEstimate::UpdateInverseDepth(double predicted, double measured, int frames) {
   const bool is_known = inverse_depth_ > 0.0;
-  inverse_depth_ =
-      is_known ? predicted + std::max(kDepthGain, 1.0 / frames) * (measured - predicted) : measured;
+  inverse_depth_ = is_known ? predicted + std::max(kDepthGain, 1.0 / frames) * (measured - predicted) : measured;
 }
 
 void SurfaceEstimate::CorrectGradient(const Eigen::Vector2d& correction, double flow_px_s) {

@@ -41,7 +41,8 @@ TEST(EventHistory, FindsTheWindowOfTheNewestEvents) {
     const auto before = std::ranges::lower_bound(events.t, end) - events.t.begin();
     for (const std::ptrdiff_t count : {1, 2, 150, 999, 2000}) {
       const TimeNs expected = count <= before ? events.t[static_cast<std::size_t>(before - count)] : events.t.front();
-      EXPECT_EQ(history.NewestWindowBegin(kEver, end, static_cast<std::size_t>(count)), expected) << end << ' ' << count;
+      EXPECT_EQ(history.NewestWindowBegin(kEver, end, static_cast<std::size_t>(count)), expected)
+          << end << ' ' << count;
     }
   }
 }

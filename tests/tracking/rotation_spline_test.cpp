@@ -87,7 +87,7 @@ events::Tracks Restored(const VibratingTracks& scene) {
 
 /// All observations, frame by frame through a buffer.
 events::Tracks RestoredByBuffer(const geometry::Camera& camera, const events::Tracks& smoothed,
-                                 std::span<const ObservedWindow> windows, int threads) {
+                                std::span<const ObservedWindow> windows, int threads) {
   ThreadPool pool(threads);
   events::Tracks restored;
   TrackBuffer buffer(camera, {}, &pool,

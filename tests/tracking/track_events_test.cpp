@@ -29,7 +29,8 @@ Vector2d ThereAndBack(double t) { return 0.6 / M_PI * std::sin(M_PI * t / 0.6) *
 
 /// Errors of the displacement from the first to the last observation, of the tracks that span [`first_before_s`,
 /// `last_after_s`] in a scene with this motion, px.
-std::vector<Vector2d> Errors(const TracksById& tracks, const Motion& moved, double first_before_s, double last_after_s) {
+std::vector<Vector2d> Errors(const TracksById& tracks, const Motion& moved, double first_before_s,
+                             double last_after_s) {
   std::vector<Vector2d> errors;
   for (const auto& [id, track] : tracks) {
     const auto &first = track.front(), &last = track.back();

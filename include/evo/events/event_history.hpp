@@ -108,7 +108,8 @@ class EventHistory {
   void AddToSlice(TimeNs t, const EventColumns& events, std::size_t begin, std::size_t end);
   /// Appends a slice that begins at `t`, in the memory of a forgotten one if there is any.
   void StartSlice(TimeNs t);
-  /// Makes room in the newest slice for events [begin, end): afterwards `next_` holds the place of each tile's next one.
+  /// Makes room in the newest slice for events [begin, end): afterwards `next_` holds the place of each tile's next
+  /// one.
   void MakeRoom(const EventColumns& events, std::size_t begin, std::size_t end);
   /// Index of the first slice that ends after `t`.
   std::size_t FirstSliceEndingAfter(TimeNs t) const;
@@ -130,9 +131,9 @@ class EventHistory {
 
   int width_;
   int height_;
-  std::size_t columns_;       // of tiles
-  std::size_t rows_;          // of tiles
-  std::deque<Slice> slices_;  // ordered by time; only slices with events
+  std::size_t columns_;                                 // of tiles
+  std::size_t rows_;                                    // of tiles
+  std::deque<Slice> slices_;                            // ordered by time; only slices with events
   std::optional<TimeNs> origin_;                        // begin of the first slice
   TimeNs oldest_ = std::numeric_limits<TimeNs>::min();  // events before this are forgotten
   // Buffers that are kept for their memory.

@@ -15,7 +15,7 @@ constexpr double kCoarseCellPx = 2.0;
 constexpr double kCoarseConvergencePx = 0.1;
 constexpr double kFineCellPx = 1.0;
 constexpr double kFineConvergencePx = 0.02;
-constexpr int kHistogramMarginPx = 2;       // events of a patch that a wrong flow moves beyond its edge
+constexpr int kHistogramMarginPx = 2;  // events of a patch that a wrong flow moves beyond its edge
 
 FlowEstimator MakeEstimator(int radius_px, double cell_px, double sigma_px, double convergence_px,
                             const TrackerOptions& options) {
@@ -42,14 +42,14 @@ events::MovingPatch MakePatch(TimeNs t, const Eigen::Vector2d& position, const E
 bool EstimateCoarseFlow(const events::EventHistory& history, TimeNs t, const Eigen::Vector2d& position,
                         const TrackerOptions& options, Eigen::Vector2d* flow) {
   thread_local events::LocalEvents events;
-  // An unknown flow hardly moves the events of a short window, which in turn tells little of a slow flow. Each window of
-  // twice the length starts from a flow of half the error, until the events have moved far enough.
+  // An unknown flow hardly moves the events of a short window, which in turn tells little of a slow flow. Each window
+  // of twice the length starts from a flow of half the error, until the events have moved far enough.
   const int radius_px = options.flow_patch_radius_px;
   const FlowEstimator estimator =
       MakeEstimator(radius_px, kCoarseCellPx, options.flow_sigma_px, kCoarseConvergencePx, options);
   const TimeNs max_half_window = FromSeconds(0.5 * options.max_window_s);
-  TimeNs half_window = flow->isZero() ? FromSeconds(0.5 * options.min_window_s)
-                                      : HalfWindow(*flow, options.window_motion_px, options);
+  TimeNs half_window =
+      flow->isZero() ? FromSeconds(0.5 * options.min_window_s) : HalfWindow(*flow, options.window_motion_px, options);
   bool is_found = false;
   for (bool is_last = false; !is_last; half_window *= 2) {
     half_window = std::min(half_window, max_half_window);

@@ -13,8 +13,8 @@ namespace evo::tracking {
 
 namespace {
 
-constexpr std::size_t kStripes = 2;      // of the image, in parallel; the sum over more costs more than they save
-constexpr double kMinSpeedPxS = 1e-3;    // guards a division
+constexpr std::size_t kStripes = 2;    // of the image, in parallel; the sum over more costs more than they save
+constexpr double kMinSpeedPxS = 1e-3;  // guards a division
 
 /// The flow within a tile: bilinear between the tile's corners.
 struct TileFlow {
@@ -35,9 +35,7 @@ struct TileFlow {
     min_speed = centre.matrix().norm() - deviation.matrix().norm();
   }
 
-  Eigen::Array2f Interpolate(float x, float y) const {
-    return origin + x * along_x + y * (along_y + x * along_xy);
-  }
+  Eigen::Array2f Interpolate(float x, float y) const { return origin + x * along_x + y * (along_y + x * along_xy); }
 };
 
 /// Half of the window in which an edge moves by `motion_px`, within limits.

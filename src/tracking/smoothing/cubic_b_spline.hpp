@@ -4,7 +4,8 @@
 
 namespace evo::tracking {
 
-/// The uniform cubic B-spline with knots at the integers, centred on 0 (C. de Boor: A Practical Guide to Splines, 1978).
+/// The uniform cubic B-spline with knots at the integers, centred on 0 (C. de Boor: A Practical Guide to Splines,
+/// 1978).
 inline double CubicBSpline(double u) {
   const double a = std::abs(u);
   if (a >= 2.0) return 0.0;

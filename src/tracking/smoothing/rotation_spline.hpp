@@ -17,10 +17,10 @@ inline constexpr TimeNs kSplineMargin = kNsPerSecond / 2;
 
 /// Restores the fast rotation of the camera (vibration, bumps) that the windows of the positions average away.
 ///
-/// A position is the intercept, and a flow the slope, of a straight motion fitted to the events of a window, so they are
-/// the mean and the mean slope of the true path over this window. Fast features have short windows and observe the fast
-/// rotation, which all features share. With a rotation phi(t) that is a cubic B-spline, J_i the Jacobian of image point
-/// i by a rotation, and K_i and L_i the mean and the mean slope over the window, position and flow of track i are
+/// A position is the intercept, and a flow the slope, of a straight motion fitted to the events of a window, so they
+/// are the mean and the mean slope of the true path over this window. Fast features have short windows and observe the
+/// fast rotation, which all features share. With a rotation phi(t) that is a cubic B-spline, J_i the Jacobian of image
+/// point i by a rotation, and K_i and L_i the mean and the mean slope over the window, position and flow of track i are
 ///     x_i(t) = s_i(t) + J_i(t) (K_i phi)(t) + noise,  v_i(t) = s_i'(t) + J_i(t) (L_i phi)(t) + noise,
 /// with a smooth path s_i that fourth differences of positions and second differences of flows remove. The coefficients
 /// of phi follow from the differences of all tracks by robust linear least squares. Each position then moves by

@@ -7,8 +7,8 @@
 
 namespace evo::tracking {
 
-inline constexpr int kSplineSupport = 12;                  ///< knots that the longest window depends on
-inline constexpr int kSplineSpan = kSplineSupport + 6;     ///< knots that a difference over several frames depends on
+inline constexpr int kSplineSupport = 12;               ///< knots that the longest window depends on
+inline constexpr int kSplineSpan = kSplineSupport + 6;  ///< knots that a difference over several frames depends on
 
 /// A finite difference of positions or flows over time, px. It equals the Jacobian times the weighted sum of the
 /// coefficients of the knots from `first` on, plus noise.

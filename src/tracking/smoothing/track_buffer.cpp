@@ -63,7 +63,7 @@ void TrackBuffer::Release(std::size_t segments) {
     parts[i].assign(held_.begin() + begin, held_.begin() + end);
     if (!rotation_spline_) return;
     RestoreRotation(camera_, lens_, std::span(held_).subspan(first, count), std::span(windows_).subspan(first, count),
-                 begin - first, parts[i]);
+                    begin - first, parts[i]);
   });
   for (events::Tracks& part : parts) {
     std::erase_if(part,

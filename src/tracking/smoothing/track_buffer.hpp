@@ -48,13 +48,13 @@ class TrackBuffer {
   bool rotation_spline_;
   ThreadPool* pool_;
   events::TrackSink sink_;
-  TimeNs delay_;                            // an observation is final after this time
-  TimeNs last_ = 0;                         // stamp of the last frame
-  std::vector<std::int64_t> last_ids_;      // observed in the last frame, ascending
-  std::vector<std::int64_t> previous_ids_;  // observed in the frame before it, ascending
-  std::optional<TimeNs> from_;              // begin of the next segment; empty before the first observation
-  events::Tracks held_;                     // from kSplineMargin before `from_` on
-  std::vector<ObservedWindow> windows_;     // of the observations held
+  TimeNs delay_;                                       // an observation is final after this time
+  TimeNs last_ = 0;                                    // stamp of the last frame
+  std::vector<std::int64_t> last_ids_;                 // observed in the last frame, ascending
+  std::vector<std::int64_t> previous_ids_;             // observed in the frame before it, ascending
+  std::optional<TimeNs> from_;                         // begin of the next segment; empty before the first observation
+  events::Tracks held_;                                // from kSplineMargin before `from_` on
+  std::vector<ObservedWindow> windows_;                // of the observations held
   std::unordered_map<std::int64_t, TimeNs> rejected_;  // id, and a stamp that no observation of it exceeds
 };
 
