@@ -15,7 +15,8 @@ inline BundleProblem DriveBundle(int frames, int points, double noise_px, std::u
   std::normal_distribution<double> normal(0.0, noise_px);
   BundleProblem problem;
   for (int i = 0; i < frames; ++i) {
-    problem.T_cam_world.emplace_back(geometry::so3::Exp({0.001 * i, -0.01 * i, 0}), Eigen::Vector3d(0.02 * i, 0, -0.4 * i));
+    problem.T_cam_world.emplace_back(geometry::so3::Exp({0.001 * i, -0.01 * i, 0}),
+                                     Eigen::Vector3d(0.02 * i, 0, -0.4 * i));
   }
   const Eigen::Matrix2d px_per_unit = 226.0 * Eigen::Matrix2d::Identity();
   for (int p = 0; p < points; ++p) {

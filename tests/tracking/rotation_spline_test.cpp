@@ -81,7 +81,7 @@ struct VibratingTracks {
 /// All observations, as one segment.
 events::Tracks Restored(const VibratingTracks& scene) {
   events::Tracks restored = scene.smoothed;
-  RestoreRotation(scene.camera, LensGrid(scene.camera), scene.smoothed, scene.windows, 0, restored);
+  RestoreRotation(scene.camera, JacobianTable(scene.camera), scene.smoothed, scene.windows, 0, restored);
   return restored;
 }
 
@@ -156,7 +156,7 @@ TEST(RestoreRotation, LeavesInstantsUnchanged) {
   VibratingTracks scene(0.1);
   scene.windows.assign(scene.windows.size(), {});
   EXPECT_TRUE(Restored(scene) == scene.smoothed);
-  RestoreRotation(scene.camera, LensGrid(scene.camera), {}, {}, 0, {});
+  RestoreRotation(scene.camera, JacobianTable(scene.camera), {}, {}, 0, {});
 }
 
 }  // namespace

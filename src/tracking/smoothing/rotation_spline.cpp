@@ -46,9 +46,9 @@ struct Sample {
 class RotationSplineEstimator {
  public:
   /// `tracks`: the observations of the segment, ordered by time.
-  RotationSplineEstimator(const LensGrid& lens, std::span<const events::TrackObservation> tracks,
+  RotationSplineEstimator(const JacobianTable& jacobians, std::span<const events::TrackObservation> tracks,
                           std::span<const ObservedWindow> windows)
-      : lens_(lens), tracks_(tracks), windows_(windows) {
+      : jacobians_(jacobians), tracks_(tracks), windows_(windows) {
     const auto second = std::ranges::upper_bound(tracks_, tracks_.front().t, {}, &events::TrackObservation::t);
     if (second != tracks_.end()) {
       const double frame_s = ToSeconds(second->t - tracks_.front().t);
@@ -75,7 +75,7 @@ class RotationSplineEstimator {
 
   /// Image motion, px, by a rotation that moves the image's centre by one px.
   RotationJacobian JacobianAt(const events::TrackObservation& o) const {
-    return lens_.At({o.x, o.y}).by_rotation / lens_.focal_px();
+    return jacobians_.Lookup({o.x, o.y}).J_pixel_rotation / jacobians_.focal_px();
   }
 
   Sample MakeSample(std::size_t index) const {
@@ -158,7 +158,7 @@ class RotationSplineEstimator {
     coefficients_ = equations.Solve(kPriorPx);
   }
 
-  const LensGrid& lens_;
+  const JacobianTable& jacobians_;
   std::span<const events::TrackObservation> tracks_;
   std::span<const ObservedWindow> windows_;
   std::size_t stride_ = 1;  // frames from one knot to the next
@@ -168,12 +168,12 @@ class RotationSplineEstimator {
 
 }  // namespace
 
-void RestoreRotation(const geometry::Camera& camera, const LensGrid& lens,
+void RestoreRotation(const geometry::Camera& camera, const JacobianTable& jacobians,
                      std::span<const events::TrackObservation> observed, std::span<const ObservedWindow> windows,
                      std::size_t first, std::span<events::TrackObservation> restored) {
   if (restored.empty()) return;
   if (std::ranges::all_of(windows, [](const ObservedWindow& window) { return window.half_s == 0.0f; })) return;
-  const RotationSplineEstimator estimator(lens, observed, windows);
+  const RotationSplineEstimator estimator(jacobians, observed, windows);
   for (std::size_t i = 0; i < restored.size(); ++i) {
     const Eigen::Vector2d position = estimator.RestoredPosition(first + i);
     if (!camera.Contains(position)) continue;

@@ -6,7 +6,7 @@
 #include "evo/core/time.hpp"
 #include "evo/events/tracks.hpp"
 #include "evo/geometry/camera.hpp"
-#include "tracking/motion/lens_grid.hpp"
+#include "tracking/motion/jacobian_table.hpp"
 #include "tracking/smoothing/observed_window.hpp"
 
 namespace evo::tracking {
@@ -29,7 +29,7 @@ inline constexpr TimeNs kSplineMargin = kNsPerSecond / 2;
 /// Frames must be evenly spaced. Positions do not change if frames are more than 25 ms apart.
 /// `observed`: all observations of the segment and its margins, ordered by time; `windows`: of each of them.
 /// `restored`: those of the segment, a copy of `observed` from index `first` on.
-void RestoreRotation(const geometry::Camera& camera, const LensGrid& lens,
+void RestoreRotation(const geometry::Camera& camera, const JacobianTable& jacobians,
                      std::span<const events::TrackObservation> observed, std::span<const ObservedWindow> windows,
                      std::size_t first, std::span<events::TrackObservation> restored);
 

@@ -3,7 +3,7 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 
-#include "tracking/patch/lanes.hpp"
+#include "tracking/patch/simd8.hpp"
 
 namespace evo::tracking {
 

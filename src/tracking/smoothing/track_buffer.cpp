@@ -18,7 +18,7 @@ constexpr std::size_t kSegmentsAtOnce = 2;  // in parallel; more would delay the
 TrackBuffer::TrackBuffer(const geometry::Camera& camera, const TrackerOptions& options, ThreadPool* pool,
                          events::TrackSink sink)
     : camera_(camera),
-      lens_(camera),
+      jacobians_(camera),
       rotation_spline_(options.rotation_spline),
       pool_(pool),
       sink_(std::move(sink)),
@@ -62,8 +62,8 @@ void TrackBuffer::Release(std::size_t segments) {
     const std::size_t count = FirstIndexFrom(begin_of(i + 1) + kSplineMargin) - first;
     parts[i].assign(held_.begin() + begin, held_.begin() + end);
     if (!rotation_spline_) return;
-    RestoreRotation(camera_, lens_, std::span(held_).subspan(first, count), std::span(windows_).subspan(first, count),
-                    begin - first, parts[i]);
+    RestoreRotation(camera_, jacobians_, std::span(held_).subspan(first, count),
+                    std::span(windows_).subspan(first, count), begin - first, parts[i]);
   });
   for (events::Tracks& part : parts) {
     std::erase_if(part,

@@ -13,7 +13,7 @@
 #include "evo/events/tracks.hpp"
 #include "evo/geometry/camera.hpp"
 #include "evo/tracking/tracker_options.hpp"
-#include "tracking/motion/lens_grid.hpp"
+#include "tracking/motion/jacobian_table.hpp"
 #include "tracking/smoothing/observed_window.hpp"
 
 namespace evo::tracking {
@@ -44,7 +44,7 @@ class TrackBuffer {
   std::size_t FirstIndexFrom(TimeNs t) const;
 
   geometry::Camera camera_;
-  LensGrid lens_;
+  JacobianTable jacobians_;
   bool rotation_spline_;
   ThreadPool* pool_;
   events::TrackSink sink_;
