@@ -1,15 +1,17 @@
-#include "evo/report/track_report.hpp"
+#include "evo/report/track_tables.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 
+#include "evo/report/figures.hpp"
+#include "evo/report/terminal_summary.hpp"
 #include "report/fixtures.hpp"
 
 namespace evo::report {
 namespace {
 
-using TrackReportTest = ReportTest;
+using TrackTablesTest = ReportTest;
 
 /// Track 4: 1 px off over 0.2 s, then 6 px; track 9 has no depth.
 evaluation::TrackAccuracy SampleAccuracy() {
@@ -21,9 +23,9 @@ evaluation::TrackAccuracy SampleAccuracy() {
     tracks[1].observations.push_back({9, t, 0.0, 0.0});
     truth[0].positions.emplace_back(Eigen::Vector2d(50.0, 60.0));
   }
-  truth[0].verdict = evaluation::TrackVerdict::kJudged;
+  truth[0].status = evaluation::TrackStatus::kEvaluated;
   truth[0].visible_until = 1500000000'400000000;
-  truth[1].verdict = evaluation::TrackVerdict::kNoDepth;
+  truth[1].status = evaluation::TrackStatus::kNoDepth;
   return evaluation::EvaluateTracks(tracks, truth, "depth", {5.0, 1.5});
 }
 
@@ -31,7 +33,7 @@ void ExpectHas(const std::string& text, const std::string& part) {
   EXPECT_NE(text.find(part), std::string::npos) << part << " in:\n" << text;
 }
 
-TEST_F(TrackReportTest, QualityIsALongTable) {
+TEST_F(TrackTablesTest, QualityIsALongTable) {
   WriteTrackQuality(folder / "track_quality.csv", SampleAccuracy());
   const std::string csv = ReadFile(folder / "track_quality.csv");
   EXPECT_TRUE(csv.starts_with("quantity,unit,threshold_px,age_low_s,age_high_s,value\ntruth,name,,,,depth\n")) << csv;
@@ -47,7 +49,7 @@ TEST_F(TrackReportTest, QualityIsALongTable) {
   }
 }
 
-TEST_F(TrackReportTest, ErrorsHaveARowForEachTrack) {
+TEST_F(TrackTablesTest, ErrorsHaveOneRowATrack) {
   WriteTrackErrors(folder / "track_errors.csv", SampleAccuracy());
   EXPECT_EQ(ReadFile(folder / "track_errors.csv"),
             "id,start,verdict,observations,lifetime_s,true_lifetime_s,compared,mean_error_px,median_error_px,"
@@ -57,23 +59,23 @@ TEST_F(TrackReportTest, ErrorsHaveARowForEachTrack) {
             "9,1500000000.000000000,no_depth,4,0.300000000,,0,,,,,,,,,\n");
 }
 
-TEST_F(TrackReportTest, SummaryNamesTheTruthAndWhatIsNotJudged) {
+TEST_F(TrackTablesTest, SummaryNamesTheTruthAndTracksThatAreNotEvaluated) {
   const std::string text = FormatTrackAccuracy(SampleAccuracy());
-  ExpectHas(text, "1 of 2 judged, truth: depth; 1 without depth\n");
+  ExpectHas(text, "1 of 2 evaluated, truth: depth; 1 without depth\n");
   EXPECT_EQ(text.find("too short"), std::string::npos);
   ExpectHas(text, " 50.0\n");
 }
 
-TEST_F(TrackReportTest, FigureShowsQuartilesOverAge) {
+TEST_F(TrackTablesTest, FigureShowsQuartilesOverAge) {
   const Figure figure = TrackErrorFigure("e", SampleAccuracy());
   ExpectHas(figure.data, "\n0.305 6 6 6 1\n");
-  ExpectHas(figure.script, "error of the track (px)");
+  ExpectHas(figure.script, "track error (px)");
   evaluation::TrackAccuracy triangulated = SampleAccuracy();
   triangulated.truth = "triangulated";
-  ExpectHas(TrackErrorFigure("e", triangulated).script, "residual of the triangulation (px)");
+  ExpectHas(TrackErrorFigure("e", triangulated).script, "triangulation residual (px)");
 }
 
-TEST_F(TrackReportTest, GnuplotDrawsItAlsoWithoutData) {
+TEST_F(TrackTablesTest, GnuplotDrawsTheFigureAlsoWithoutData) {
   if (std::system("command -v gnuplot >/dev/null 2>&1") != 0) GTEST_SKIP() << "gnuplot is not installed";
   Gnuplot gnuplot(folder);
   gnuplot.Draw("full", TrackErrorFigure("full", SampleAccuracy()));

@@ -1,4 +1,4 @@
-#include "evo/evaluation/scale_drift.hpp"
+#include "evaluation/trajectory/local_scale.hpp"
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,8 @@ std::vector<PosePair> Drive(int n, const std::function<double(double)>& scale) {
 }
 
 std::vector<ScaleSample> LocalScale(const std::vector<PosePair>& pairs, double scale = 1.0) {
-  return ComputeLocalScale(MatchPath(pairs, {scale, geometry::SE3()}), 0, kGap, {});
+  return ComputeLocalScale(BuildMatchedTrajectory(pairs, {scale, geometry::SE3()}), 0, kGap,
+                           SegmentOptions().scale_segment_m);
 }
 
 TEST(LocalScale, IsOneForTheTruth) {
@@ -51,7 +52,7 @@ TEST(LocalScale, IsRelativeToTheAlignment) {
 TEST(LocalScale, FollowsALinearDrift) {
   const auto drift = [](double metres) { return 1.0 + 0.002 * metres; };  // 40 % over 200 m
   for (const auto& sample : LocalScale(Drive(401, drift))) {
-    // Half a stretch from the ends there is motion on both sides, nearer only on one.
+    // The window is two-sided up to half a segment from the ends.
     const bool inside = sample.distance >= 5.0 && sample.distance <= 195.0;
     EXPECT_NEAR(sample.ratio * drift(sample.distance), 1.0, inside ? 2e-4 : 6e-3) << sample.distance;
   }
@@ -74,7 +75,7 @@ TEST(LocalScale, StaysNearTheTruthUnderNoise) {
   EXPECT_NEAR(sum / 400.0, 1.0, 0.005);
 }
 
-TEST(LocalScale, IsHeldWhileTheCameraStands) {
+TEST(LocalScale, KeepsItsValueAtAStop) {
   auto pairs = Drive(200, [](double) { return 0.5; });
   const std::vector<PosePair> stop(5000, pairs[100]);
   pairs.insert(pairs.begin() + 100, stop.begin(), stop.end());
@@ -84,7 +85,7 @@ TEST(LocalScale, IsHeldWhileTheCameraStands) {
   for (const auto& sample : samples) EXPECT_NEAR(sample.ratio, 2.0, 1e-9);
 }
 
-TEST(LocalScale, IsUnknownWithoutMotion) {
+TEST(LocalScale, IsUndeterminedWithoutMotion) {
   const auto pairs = Drive(2, [](double) { return 1.0; });
   for (const auto& sample : LocalScale(std::vector(100, pairs[0]))) EXPECT_TRUE(std::isnan(sample.ratio));
   EXPECT_TRUE(LocalScale({}).empty());
@@ -94,7 +95,7 @@ TEST(LocalScale, IsUnknownWithoutMotion) {
   }
 }
 
-TEST(LocalScale, DoesNotReachAcrossAGap) {
+TEST(LocalScale, WindowEndsAtGaps) {
   const auto jump = [](double metres) { return metres < 100.0 ? 1.0 : 2.0; };
   auto pairs = Drive(400, jump);
   // A new map begins at 100 m, elsewhere and with another scale; then a piece of two poses, too short to judge.
@@ -115,8 +116,8 @@ TEST(LocalScale, DoesNotReachAcrossAGap) {
   }
 }
 
-TEST(LocalScale, ShortPathsAreJudgedByAFifth) {
-  // 2 m, far less than a stretch; the scale halves in the middle and both ends must show it.
+TEST(LocalScale, ShortPathsUseAFifthOfTheirLength) {
+  // 2 m, far less than a segment; the scale halves in the middle and both ends must show it.
   auto pairs = Drive(401, [](double metres) { return metres < 100.0 ? 1.0 : 0.5; });
   for (auto& pair : pairs) {
     for (auto* pose : {&pair.T_world_cam_estimate, &pair.T_world_cam_truth}) {

@@ -1,4 +1,4 @@
-#include "evo/evaluation/consistency.hpp"
+#include "evaluation/trajectory/nees.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,20 +12,20 @@ namespace {
 constexpr double kPositionSigma = 0.03;
 constexpr double kAngleSigma = 0.002;
 
-struct Noisy {
+struct NoisyRun {
   std::vector<PosePair> pairs;
   std::vector<geometry::StampedCovariance> covariances;
 };
 
-/// Errors as large as the covariances say, but for the first pose, which has none.
-Noisy MakeRun(int poses, double scale, std::uint32_t seed) {
+/// Errors drawn from the covariances; the first pose is the origin and has none.
+NoisyRun MakeRun(int poses, double scale, std::uint32_t seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
   const geometry::SE3 T_estimate_truth(geometry::so3::Exp({0.4, -1.0, 0.7}), {3.0, -2.0, 5.0});
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
   covariance.diagonal() << Eigen::Vector3d::Constant(kPositionSigma * kPositionSigma),
       Eigen::Vector3d::Constant(kAngleSigma * kAngleSigma);
-  Noisy run;
+  NoisyRun run;
   for (int i = 0; i < poses; ++i) {
     const TimeNs t = i * TimeNs{20'000'000};
     const geometry::SE3 truth(geometry::so3::Exp({0.0, 0.01 * i, 0.0}), {0.2 * i, std::sin(0.1 * i), 0.05 * i});
@@ -42,51 +42,51 @@ Noisy MakeRun(int poses, double scale, std::uint32_t seed) {
   return run;
 }
 
-TEST(Consistency, IsOneWhereErrorsAreAsLargeAsSaid) {
-  const Noisy run = MakeRun(3000, 0.4, 1);
-  const auto consistency = MeasureConsistency(run.pairs, run.covariances, true);
-  EXPECT_EQ(consistency.pose.count, 2999) << "the certain pose does not count";
+TEST(Nees, IsOneForConsistentCovariances) {
+  const NoisyRun run = MakeRun(3000, 0.4, 1);
+  const auto nees = ComputeNees(run.pairs, run.covariances, true);
+  EXPECT_EQ(nees.pose.count, 2999) << "the origin does not count";
   // The squared error of n degrees of freedom over n has the variance 2 / n.
-  EXPECT_NEAR(consistency.translation.mean, 1.0, 4.0 * std::sqrt(2.0 / 3.0 / 2999.0));
-  EXPECT_NEAR(consistency.rotation.mean, 1.0, 4.0 * std::sqrt(2.0 / 3.0 / 2999.0));
-  EXPECT_NEAR(consistency.pose.mean, 1.0, 4.0 * std::sqrt(2.0 / 6.0 / 2999.0));
+  EXPECT_NEAR(nees.translation.mean, 1.0, 4.0 * std::sqrt(2.0 / 3.0 / 2999.0));
+  EXPECT_NEAR(nees.rotation.mean, 1.0, 4.0 * std::sqrt(2.0 / 3.0 / 2999.0));
+  EXPECT_NEAR(nees.pose.mean, 1.0, 4.0 * std::sqrt(2.0 / 6.0 / 2999.0));
 }
 
-TEST(Consistency, GrowsAsTheErrorsSquareOverTheCovariance) {
-  Noisy run = MakeRun(500, 1.0, 2);
-  const double honest = MeasureConsistency(run.pairs, run.covariances, true).pose.mean;
+TEST(Nees, ScalesWithTheInverseCovariance) {
+  NoisyRun run = MakeRun(500, 1.0, 2);
+  const double consistent = ComputeNees(run.pairs, run.covariances, true).pose.mean;
   for (auto& row : run.covariances) row.covariance /= 9.0;
-  EXPECT_NEAR(MeasureConsistency(run.pairs, run.covariances, true).pose.mean, 9.0 * honest, 1e-9);
+  EXPECT_NEAR(ComputeNees(run.pairs, run.covariances, true).pose.mean, 9.0 * consistent, 1e-9);
 }
 
-TEST(Consistency, AFixedScaleIsJudgedToo) {
-  const Noisy run = MakeRun(500, 1.01, 3);
-  EXPECT_LT(MeasureConsistency(run.pairs, run.covariances, true).translation.mean, 1.3);
-  EXPECT_GT(MeasureConsistency(run.pairs, run.covariances, false).translation.mean, 10.0);
+TEST(Nees, IncludesTheScaleErrorIfTheScaleIsFixed) {
+  const NoisyRun run = MakeRun(500, 1.01, 3);
+  EXPECT_LT(ComputeNees(run.pairs, run.covariances, true).translation.mean, 1.3);
+  EXPECT_GT(ComputeNees(run.pairs, run.covariances, false).translation.mean, 10.0);
 }
 
-TEST(Consistency, ARunThatWasStartedAnewIsJudgedPieceByPiece) {
-  const Noisy first = MakeRun(400, 0.4, 5);
-  Noisy second = MakeRun(400, 1.7, 6);  // another scale
-  Noisy both = first;
+TEST(Nees, EveryReinitialisationHasItsOwnOrigin) {
+  const NoisyRun first = MakeRun(400, 0.4, 5);
+  NoisyRun second = MakeRun(400, 1.7, 6);  // another scale
+  NoisyRun both = first;
   for (std::size_t i = 0; i < second.pairs.size(); ++i) {
     const TimeNs later = second.covariances[i].t + 400 * TimeNs{20'000'000};
     second.pairs[i].t_estimate = second.pairs[i].t_truth = second.covariances[i].t = later;
     both.pairs.push_back(second.pairs[i]);
     both.covariances.push_back(second.covariances[i]);
   }
-  const auto consistency = MeasureConsistency(both.pairs, both.covariances, true);
-  EXPECT_EQ(consistency.pose.count, 798);
-  EXPECT_NEAR(consistency.pose.mean, 1.0, 0.2);
+  const auto nees = ComputeNees(both.pairs, both.covariances, true);
+  EXPECT_EQ(nees.pose.count, 798);
+  EXPECT_NEAR(nees.pose.mean, 1.0, 0.2);
 }
 
-TEST(Consistency, PosesWithoutACovarianceDoNotCount) {
-  Noisy run = MakeRun(100, 1.0, 4);
+TEST(Nees, SkipsPosesWithoutCovariance) {
+  NoisyRun run = MakeRun(100, 1.0, 4);
   std::erase_if(run.covariances, [](const geometry::StampedCovariance& row) { return row.t % 40'000'000 != 0; });
-  EXPECT_EQ(MeasureConsistency(run.pairs, run.covariances, true).pose.count, 49);
+  EXPECT_EQ(ComputeNees(run.pairs, run.covariances, true).pose.count, 49);
   run.covariances.erase(run.covariances.begin());
-  EXPECT_EQ(MeasureConsistency(run.pairs, run.covariances, true).pose.count, 0) << "relative to what?";
-  const auto none = MeasureConsistency(run.pairs, {}, true);
+  EXPECT_EQ(ComputeNees(run.pairs, run.covariances, true).pose.count, 0) << "there is no origin";
+  const auto none = ComputeNees(run.pairs, {}, true);
   EXPECT_EQ(none.pose.count, 0);
   EXPECT_TRUE(std::isnan(none.pose.mean));
 }
