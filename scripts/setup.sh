@@ -13,7 +13,7 @@ packages=(
 test_packages=(
   libgtest-dev libbenchmark-dev
   libceres-dev # a second bundle adjustment to compare with
-  clang-format-14 clang-tidy-16 python3
+  clang-format-14 clang-tidy-22 python3
 )
 build_tests=OFF
 case "${1:-}" in
