@@ -192,7 +192,7 @@ TEST_F(BadInputTest, PixelOutsideTheSensor) {
 
 TEST_F(BadInputTest, CalibrationOfAnotherSensor) {
   const fs::path calibration = Write("calib.txt", "199.1 198.8 132.2 110.7 -0.368 0.150 -0.0003 -0.0006 0.0\n");
-  ExpectCalibrationRefused(calibration, {"street_data.hdf5", "240 x 180", "do not fit together"});
+  ExpectCalibrationRefused(calibration, {"street_data.hdf5", "240 x 180", "give the calibration of this recording"});
   ExpectRefusal("run --events " + Quote(Sample()) + " --sensor 240x180", kInput,
                 {"camchain-imucam-street.yaml", "346 x 260", "240 x 180"});
 }

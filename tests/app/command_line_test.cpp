@@ -27,7 +27,8 @@ TEST_F(CommandLineTest, HelpShowsAnExampleOfEveryCommand) {
   for (const std::string command : {"run", "track", "odometry", "evaluate", "report", "simulate", "info", "config"}) {
     EXPECT_NE(overview.find("\n  " + command + " "), std::string::npos) << overview;
     ASSERT_EQ(Run(command + " --help"), 0);
-    EXPECT_NE(out.find("Example:\n  evo-run " + command), std::string::npos) << out;
+    EXPECT_NE(out.find("\nExamples:\n"), std::string::npos) << out;
+    EXPECT_NE(out.find("\n  evo-run " + command + " "), std::string::npos) << out;
   }
   EXPECT_EQ(Run("--version"), 0);
   EXPECT_TRUE(out.starts_with("evo-run "));

@@ -1,4 +1,4 @@
-#include "app/interrupt.hpp"
+#include "app/run/interrupt.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>

@@ -162,7 +162,7 @@ TEST_F(MvsecEventsTest, RefusesABadRowAndNamesIt) {
       {{nan, 1, 3, 1}, {"nan"}},
       {{1, inf, 3, 1}, {"inf"}},
       {{1.5, 1, 3, 1}, {"1.5", "not whole"}},
-      {{346, 1, 3, 1}, {"(346, 1)", "346 x 260", "do not fit together"}},
+      {{346, 1, 3, 1}, {"(346, 1)", "346 x 260", "give the calibration of this recording"}},
       {{1, 260, 3, 1}, {"(1, 260)"}},
       {{-1, 0, 3, 1}, {"(-1, 0)"}},
       {{1, 1, 3, 2}, {"polarity 2"}},
@@ -260,8 +260,13 @@ TEST_F(MvsecEventsTest, ReadsLzf) {
   EXPECT_EQ(events.t, (std::vector<TimeNs>{2 * kNsPerSecond, 2 * kNsPerSecond}));
   EXPECT_EQ(events.x, (std::vector<std::uint16_t>{2, 2}));
   EXPECT_EQ(events.polarity, (std::vector<std::int8_t>{1, 1}));
-  for (const std::vector<unsigned char>& broken :
-       {std::vector<unsigned char>{7, 0}, {0xe0}, {0xe0, 1}, {0, 0, 0x20, 9}, {0, 0}}) {
+  for (const std::vector<unsigned char>& broken : {std::vector<unsigned char>{7, 0},
+                                                   {0xe0},
+                                                   {0xe0, 1},
+                                                   {0, 0, 0x20, 9},
+                                                   {0, 0},
+                                                   {0xe0, 255, 0},
+                                                   {0, 0, 0xe0, 255, 0}}) {
     StoreFiltered(folder / "b.hdf5", 32000, broken);
     ExpectMentions(Refusal([&] { ReadAll(folder / "b.hdf5"); }), {"b.hdf5: davis/left/events"});
   }

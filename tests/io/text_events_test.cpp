@@ -124,8 +124,9 @@ TEST_F(TextEventsTest, RefusesTimeThatRunsBackwards) {
 
 TEST_F(TextEventsTest, RefusesPixelsOffTheSensor) {
   for (const std::string line : {"0.3 346 0 1", "0.3 0 260 1", "0.3 -1 0 1", "0.3 70000 0 1"}) {
-    ExpectMentions(RefusalOf("0.1 1 1 0\n" + line + "\n0.4 1 1 1\n"),
-                   {"bad.txt:2: ", "346 x 260", "do not fit together", line.substr(4, line.find(' ', 4) - 4)});
+    ExpectMentions(
+        RefusalOf("0.1 1 1 0\n" + line + "\n0.4 1 1 1\n"),
+        {"bad.txt:2: ", "346 x 260", "give the calibration of this recording", line.substr(4, line.find(' ', 4) - 4)});
   }
 }
 
