@@ -99,7 +99,7 @@ TEST_F(BadInputTest, MissingFiles) {
   ExpectTracksRefused(folder / "absent.txt", kInput, {"no such file"});
 }
 
-TEST_F(BadInputTest, AFolderWithoutARecording) {
+TEST_F(BadInputTest, FolderWithoutRecording) {
   fs::create_directories(folder / "nothing");
   ExpectEventsRefused(folder / "nothing", {"no *_data.hdf5"});
 }
@@ -132,7 +132,7 @@ TEST_F(BadInputTest, TruncatedTrajectoryText) {
   ExpectTruthRefused(Write("cut.txt", text.substr(0, text.rfind(' '))), kInput, {"cut.txt:"});
 }
 
-TEST_F(BadInputTest, ADamagedBlockInsideAnHdf5File) {
+TEST_F(BadInputTest, DamagedHdf5Block) {
   std::string bytes = ReadFile(kEvents);
   std::fill(bytes.begin() + 1'000'000, bytes.begin() + 2'000'000, '\x55');
   ExpectEventsRefused(Write("damaged.hdf5", bytes), {"damaged"});
@@ -207,7 +207,7 @@ TEST_F(BadInputTest, TracksOfAnotherSensor) {
   ExpectTracksRefused(WriteTrackText("tracks.txt", 60, 40.0), kInput, {"346 x 260", "do not belong together"});
 }
 
-TEST_F(BadInputTest, IntervalBehindTheEnd) {
+TEST_F(BadInputTest, IntervalAfterTheEnd) {
   ExpectRefusal("run --events " + Quote(Sample()) + " --from 60", kNothingToDo, {"street_data.hdf5", "1.4999"});
   ExpectRefusal("run --events " + Quote(Sample()) + " --to 0.001", kNothingToDo, {"street_data.hdf5"});
 }
@@ -231,7 +231,7 @@ TEST_F(BadInputTest, UnknownOption) {
   ExpectRefusal("track --ground-truth x --events " + Quote(Sample()), kUsage, {"--ground-truth"});
 }
 
-TEST_F(BadInputTest, NoCalibrationAtHand) {
+TEST_F(BadInputTest, NoCalibration) {
   ExpectRefusal("run --events " + Quote(kEvents), kUsage, {"street_data.hdf5", "--calibration"});
 }
 
@@ -253,7 +253,7 @@ TEST_F(BadInputTest, DegenerateAlignment) {
                 {"line.txt"});
 }
 
-TEST_F(BadInputTest, AFileInTheWayOfTheResults) {
+TEST_F(BadInputTest, FileInPlaceOfTheOutputFolder) {
   Write("file", "in the way");
   for (const char* place : {"file", "file/result"}) {
     EXPECT_EQ(Refusal("run -q --events " + Quote(Sample()) + " --out " + Quote(folder / place)), kOutput);

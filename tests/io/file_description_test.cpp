@@ -97,7 +97,7 @@ TEST_F(FileDescriptionTest, ShowsCalibrationsAndFolders) {
   EXPECT_EQ(sequence["ground truth file"], "none");
 }
 
-TEST_F(FileDescriptionTest, RefusesWhatItDoesNotKnow) {
+TEST_F(FileDescriptionTest, RefusesUnknownKinds) {
   ExpectMentions(Refusal([&] { DescribeFile(Write("a.txt", "some prose\n")); }), {"a.txt", "a text of unknown kind"});
   ExpectMentions(Refusal([&] { DescribeFile(Write("a.png", "\x89PNG\r\n\x1a\n")); }), {"a PNG image"});
   StoreTable(folder / "a.hdf5", "davis/right/events", {1, 4}, {1, 1, 1, 1});
@@ -136,7 +136,7 @@ TEST_F(SequenceTest, FindsTheFilesOfAnMvsecFolder) {
   ExpectMentions(Refusal([&] { FindSequence(folder / "none"); }), {"no such file"});
 }
 
-TEST_F(FileKindTest, IsToldByContent) {
+TEST_F(FileKindTest, DetectsTheKindByContent) {
   EXPECT_EQ(DetectKind(Write("a", "0.003811000 96 133 0\n")), FileKind::kEventText);
   EXPECT_EQ(DetectKind(Write("a", "# comment\r\n\r\n0.003811000 96 133 -1\r\n")), FileKind::kEventText);
   EXPECT_EQ(DetectKind(Write("a", "0 1468941032.255472635 31 46\n")), FileKind::kTrackText);

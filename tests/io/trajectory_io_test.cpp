@@ -63,7 +63,7 @@ TEST_F(TrajectoryIoTest, ReadsWhatItWrites) {
   EXPECT_EQ(Content(folder / "out" / "a.txt"), Content(folder / "b.txt"));
 }
 
-TEST_F(TrajectoryIoTest, WritesTheStrictestTum) {
+TEST_F(TrajectoryIoTest, WritesStrictTum) {
   const Eigen::Quaterniond rotation(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()));
   WriteTum(folder / "a.txt", {{1'500'000'000, {rotation, {1, -2, 0.1}}}});
   EXPECT_EQ(Content(folder / "a.txt"),
