@@ -173,7 +173,7 @@ void RunEvaluate(const EvaluateArguments& arguments, const std::vector<std::stri
 
 CLI::Option* AddTrajectoryOptions(CLI::App& command, TrajectoryArguments& arguments) {
   auto* const ground_truth = command.add_option("--ground-truth", arguments.ground_truth,
-                                                "True poses: MVSEC _gt.hdf5, UZH groundtruth.txt, TUM text or KITTI");
+                                                "True poses: MVSEC _gt.hdf5, UZH groundtruth.txt, TUM text or KITTI poses");
   ground_truth->type_name("FILE");
   command.add_option("--estimate", arguments.estimate, "Estimated trajectory: TUM text or KITTI poses")
       ->type_name("FILE")
