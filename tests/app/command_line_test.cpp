@@ -115,7 +115,7 @@ TEST_F(CommandLineTest, PrintedConfigurationPassesTheCheck) {
 
 TEST_F(CommandLineTest, MarkdownListsTheParametersOfFilesAndScenes) {
   ASSERT_EQ(Run("config --markdown"), 0);
-  for (const char* text : {"# Parameters\n", "\n### tracker\n", "\n| `tracker.features` | `100` |",
+  for (const char* text : {"# Parameters\n", "\n### tracker\n", "\n| `tracker.features` | `150` |",
                            "\n### odometry.pose\n", "\n| `scene.kind` | `street` |", "\n| `output.start_s` |"}) {
     EXPECT_NE(out.find(text), std::string::npos) << text;
   }
