@@ -259,7 +259,8 @@ void FeatureTracker::WithdrawOdd() {
     if (feature.judged || feature.frames > kOldestWithdrawn || feature.oddity.frames() < kYouth) continue;
     feature.judged = true;
     young.push_back(&feature);
-    oddities.push_back(feature.oddity.Of(ego_motion_.motion().TranslationalFlow(ego_motion_.jacobians().Lookup(feature.position))));
+    oddities.push_back(
+        feature.oddity.Of(ego_motion_.motion().TranslationalFlow(ego_motion_.jacobians().Lookup(feature.position))));
   }
   const std::vector<bool> are_odd = oddity_judge_.AreOdd(oddities);
   for (std::size_t i = 0; i < young.size(); ++i) {

@@ -14,8 +14,8 @@
 #include "tracking/motion/ego_motion.hpp"
 #include "tracking/motion/epipolar_filter.hpp"
 #include "tracking/motion/rotation_correction.hpp"
-#include "tracking/patch/event_histogram.hpp"
 #include "tracking/patch/em_alignment.hpp"
+#include "tracking/patch/event_histogram.hpp"
 #include "tracking/tracker.hpp"
 
 namespace evo::tracking {
@@ -31,8 +31,8 @@ struct TrackedFeature {
   double inverse_depth = 0.0;                             ///< mean over the last frames, see EgoMotion
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();        ///< of its plane, see EgoMotion::At
   double scale = 1.0;                                     ///< of the patch against its first window
-  EventHistogram events;                                      ///< the template
-  std::optional<SelfBias> self_bias = {};               ///< of the template since it learnt, see AssociationTable
+  EventHistogram events;                                  ///< the template
+  std::optional<SelfBias> self_bias = {};                 ///< of the template since it learnt, see AssociationTable
   int windows = 1;                                        ///< that the template has learnt from
   double unlearnt_s = 0.0;                                ///< time since the last of them
   double information = 0.0;                               ///< see AssociationTable, in the worst direction, at birth
@@ -52,14 +52,14 @@ struct FeatureAlignment {
     kLost,
   };
   State state = State::kLost;
-  Eigen::Vector2d position;                 ///< predicted, px: `start` and `motion` are relative to it
+  Eigen::Vector2d position;                      ///< predicted, px: `start` and `motion` are relative to it
   Eigen::Matrix<double, 2, 3> J_pixel_rotation;  ///< there, see PixelJacobians
-  PatchMotion start;                        ///< predicted
-  PatchMotion motion;                       ///< aligned
+  PatchMotion start;                             ///< predicted
+  PatchMotion motion;                            ///< aligned
   TimeNs half_window = 0;
   events::LocalEvents events;
   double stray_share = 0.0;  ///< of the events, see AlignmentQuality
-  SelfBias self_bias;      ///< of the template, see AssociationTable
+  SelfBias self_bias;        ///< of the template, see AssociationTable
 
   /// Where the feature is now, px.
   Eigen::Vector2d Landed() const { return state == State::kFound ? position + motion.offset : position; }
@@ -86,8 +86,8 @@ class FeatureTracker : public Tracker {
   void Track(const events::EventHistory& history, TimeNs t);
   /// How a feature probably lies in the sensor `step_s` after the last frame, relative to the `position` returned.
   PatchMotion Predict(const TrackedFeature& feature, double step_s, Eigen::Vector2d* position) const;
-  void Align(const events::EventHistory& history, TimeNs t, const RotationCorrection& jolt, const TrackedFeature& feature,
-             FeatureAlignment* alignment) const;
+  void Align(const events::EventHistory& history, TimeNs t, const RotationCorrection& jolt,
+             const TrackedFeature& feature, FeatureAlignment* alignment) const;
   void AlignAll(const events::EventHistory& history, TimeNs t, const RotationCorrection& jolt);
   /// Where all features turned unexpectedly, aligns them again, expecting that.
   void FollowJolt(const events::EventHistory& history, TimeNs t);

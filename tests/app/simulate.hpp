@@ -7,7 +7,7 @@
 #include "app/evo_run.hpp"
 #include "evo/core/parameters.hpp"
 #include "evo/io/checksum.hpp"
-#include "evo/simulation/scene_options.hpp"
+#include "evo/simulation/simulated_run.hpp"
 
 namespace evo::app {
 

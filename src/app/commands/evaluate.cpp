@@ -18,7 +18,7 @@
 #include "evo/core/error.hpp"
 #include "evo/io/file_kind.hpp"
 #include "evo/io/pose_covariance_io.hpp"
-#include "evo/report/tables.hpp"
+#include "evo/report/terminal_summary.hpp"
 
 namespace evo::app {
 
@@ -172,8 +172,9 @@ void RunEvaluate(const EvaluateArguments& arguments, const std::vector<std::stri
 }
 
 CLI::Option* AddTrajectoryOptions(CLI::App& command, TrajectoryArguments& arguments) {
-  auto* const ground_truth = command.add_option("--ground-truth", arguments.ground_truth,
-                                                "True poses: MVSEC _gt.hdf5, UZH groundtruth.txt, TUM text or KITTI poses");
+  auto* const ground_truth =
+      command.add_option("--ground-truth", arguments.ground_truth,
+                         "True poses: MVSEC _gt.hdf5, UZH groundtruth.txt, TUM text or KITTI poses");
   ground_truth->type_name("FILE");
   command.add_option("--estimate", arguments.estimate, "Estimated trajectory: TUM text or KITTI poses")
       ->type_name("FILE")

@@ -42,7 +42,7 @@ void RunAll(const RunArguments& arguments, const std::vector<std::string>& comma
   const auto alignments = evaluation::ParseAlignments(arguments.align.empty() ? kDefaultAlignments : arguments.align);
   Config config;
   arguments.common.Apply(&config.parameters);
-  config.evaluation.leave_out_undetermined = arguments.align.empty();
+  config.evaluation.skip_degenerate_alignments = arguments.align.empty();
   const std::filesystem::path& out = arguments.results.out;
   CheckRunFolder(out, ResultNames(alignments), arguments.common.force);
   StageRun run(arguments.common, arguments.results, config.parameters, command_line);

@@ -19,7 +19,8 @@
 #include "evo/core/error.hpp"
 #include "evo/core/parallel.hpp"
 #include "evo/core/progress.hpp"
-#include "evo/simulation/scene_options.hpp"
+#include "evo/simulation/simulate.hpp"
+#include "evo/simulation/simulated_run.hpp"
 
 namespace evo::app {
 
@@ -134,9 +135,7 @@ simulation::SimulationCounts Simulate(const SimulateArguments& arguments, const 
   simulation::SimulationSink* const sink =
       arguments.preview_every_s > 0.0 ? static_cast<simulation::SimulationSink*>(&preview) : output;
   Progress progress("simulate", !arguments.common.quiet);
-  const TimeNs lead_in = std::min(FromSeconds(scene.simulation.lead_in_s), run.before);
-  return simulation::Simulate(run.scene, run.camera, run.motion, lead_in, run.duration, scene.sensor, scene.simulation,
-                              static_cast<std::uint64_t>(scene.seed), pool, &progress, sink);
+  return simulation::Simulate(run, scene, pool, sink, &progress);
 }
 
 void RunSimulate(const SimulateArguments& arguments, const std::vector<std::string>& command_line) {
@@ -150,7 +149,7 @@ void RunSimulate(const SimulateArguments& arguments, const std::vector<std::stri
   const SequenceOrder order = CheckOrder(arguments, config);
   const simulation::SimulatedRun run = WithErrorContext(
       arguments.place(), [&] { return ChosenPart(arguments, config.scene, simulation::MakeRun(config.scene)); });
-  const geometry::Trajectory poses = simulation::Sample(run.motion, run.duration, config.output.pose_hz);
+  const geometry::Trajectory poses = simulation::SamplePoses(run.T_world_cam, run.duration, config.output.pose_hz);
   RunRecord record(command_line, config.parameters);
   AddInputs(arguments, config.scene, &record);
 

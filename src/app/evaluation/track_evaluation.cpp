@@ -11,10 +11,11 @@
 #include "evo/core/output_file.hpp"
 #include "evo/io/track_io.hpp"
 #include "evo/odometry/resampling.hpp"
+#include "evo/report/evaluation_tables.hpp"
 #include "evo/report/figures.hpp"
 #include "evo/report/latex_tables.hpp"
-#include "evo/report/tables.hpp"
-#include "evo/report/track_report.hpp"
+#include "evo/report/terminal_summary.hpp"
+#include "evo/report/track_tables.hpp"
 
 namespace evo::app {
 
@@ -139,8 +140,8 @@ TrackEvaluation EvaluateTracks(const TrackEvaluationArguments& arguments, const 
   evaluation.lifetimes = ComputeLifetimes(evaluation.made_frames_s ? odometry::Resample(tracks, resampling) : tracks);
   record->AddCount("tracks", evaluation.accuracy.tracks.size());
   record->AddCount("track_observations", tracks.size());
-  record->AddCount("judged_tracks",
-                   static_cast<std::size_t>(evaluation::Count(evaluation.accuracy, evaluation::TrackVerdict::kJudged)));
+  record->AddCount("judged_tracks", static_cast<std::size_t>(
+                                        evaluation::Count(evaluation.accuracy, evaluation::TrackStatus::kEvaluated)));
   return evaluation;
 }
 

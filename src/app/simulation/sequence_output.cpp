@@ -30,9 +30,9 @@ class GroundTruthOutput {
       : GroundTruthOutput(path, source, Shifted(source.poses, start), with_flow, start) {}
 
   void OnDepth(TimeNs t, const events::DepthMap& depth) {
-    const geometry::SE3 T_world_cam = motion_(t);
+    const geometry::SE3 T_world_cam = T_world_cam_(t);
     file_.AppendDepth(start_ + t, depth);
-    events::DepthMap rectified = rectified_depth_.At(t, T_world_cam);
+    events::DepthMap rectified = rectified_depth_.Render(t, T_world_cam);
     file_.AppendRectifiedDepth(start_ + t, rectified);
     if (with_flow_ && previous_) {
       file_.AppendFlow(start_ + previous_->t, simulation::StaticFlow(rectified_, previous_->depth,
@@ -45,9 +45,9 @@ class GroundTruthOutput {
  private:
   GroundTruthOutput(const fs::path& path, const SequenceSource& source, const geometry::Trajectory& poses,
                     bool with_flow, TimeNs start)
-      : motion_(source.run.motion),
+      : T_world_cam_(source.run.T_world_cam),
         rectified_(geometry::Rectified(source.run.camera.calibration())),
-        rectified_depth_(source.run.scene, rectified_, source.pool),
+        rectified_depth_(*source.run.scene, rectified_, source.pool),
         with_flow_(with_flow),
         start_(start),
         file_(path, poses, poses) {}
@@ -58,7 +58,7 @@ class GroundTruthOutput {
     events::DepthMap depth;  ///< rectified
   };
 
-  const simulation::CameraMotion& motion_;
+  const simulation::PoseFunction& T_world_cam_;
   geometry::Camera rectified_;
   simulation::DepthCamera rectified_depth_;
   bool with_flow_;

@@ -9,7 +9,7 @@
 #include "app/run/error_context.hpp"
 #include "evo/core/error.hpp"
 #include "evo/io/trajectory_io.hpp"
-#include "evo/report/tables.hpp"
+#include "evo/report/terminal_summary.hpp"
 
 namespace evo::app {
 

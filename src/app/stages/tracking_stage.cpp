@@ -14,9 +14,10 @@
 #include "evo/core/error.hpp"
 #include "evo/core/output_file.hpp"
 #include "evo/core/progress.hpp"
+#include "evo/report/evaluation_tables.hpp"
 #include "evo/report/figures.hpp"
 #include "evo/report/latex_tables.hpp"
-#include "evo/report/tables.hpp"
+#include "evo/report/terminal_summary.hpp"
 
 namespace evo::app {
 

@@ -24,7 +24,8 @@ double SmallestInformation(const events::LocalEvents& events, const PatchMotion&
   thread_local TemplatePoints points;
   thread_local std::array<AssociationTable, 2> fields;
   points.Update(events, motion);
-  std::array<EventHistogram, 2> halves{EventHistogram(all.radius(), all.planes()), EventHistogram(all.radius(), all.planes())};
+  std::array<EventHistogram, 2> halves{EventHistogram(all.radius(), all.planes()),
+                                       EventHistogram(all.radius(), all.planes())};
   for (std::size_t i = 0; i < events.size(); ++i) {
     EventHistogram& half = halves[events.dt[i] > 0.0f ? 1 : 0];
     half.Vote(points.u[i], points.v[i], half.PlaneOf(events.polarity[i]), 1.0f);
@@ -97,14 +98,15 @@ std::optional<TrackedFeature> FeatureTracker::Birth(const events::EventHistory& 
       &events);
   if (events.size() < static_cast<std::size_t>(options_.min_events)) return std::nullopt;
   const double inverse_depth = ego_motion_.EstimateInverseDepth({position, flow});
-  TrackedFeature feature{.position = position,
-                         .filtered = position,
-                         .flow = flow,
-                         .inverse_depth = inverse_depth,
-                         .slope = FitInverseDepthGradient(depths, {position, inverse_depth}).value_or(Eigen::Vector2d::Zero()),
-                         .events = EventHistogram(options_.patch_radius_px + kTemplateMarginPx, planes()),
-                         .half_window = half_window,
-                         .told_flow = flow};
+  TrackedFeature feature{
+      .position = position,
+      .filtered = position,
+      .flow = flow,
+      .inverse_depth = inverse_depth,
+      .slope = FitInverseDepthGradient(depths, {position, inverse_depth}).value_or(Eigen::Vector2d::Zero()),
+      .events = EventHistogram(options_.patch_radius_px + kTemplateMarginPx, planes()),
+      .half_window = half_window,
+      .told_flow = flow};
   const PatchFlow patch = ego_motion_.PredictPatchFlow({position, flow}, feature.slope);
   PatchMotion motion;
   motion.flow = flow;

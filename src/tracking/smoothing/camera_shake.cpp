@@ -267,9 +267,9 @@ class ShakeEstimator {
 
 }  // namespace
 
-void RestoreShake(const geometry::Camera& camera, const JacobianTable& lens, std::span<const events::TrackObservation> seen,
-                  std::span<const ObservedWindow> windows, std::size_t first,
-                  std::span<events::TrackObservation> restored) {
+void RestoreShake(const geometry::Camera& camera, const JacobianTable& lens,
+                  std::span<const events::TrackObservation> seen, std::span<const ObservedWindow> windows,
+                  std::size_t first, std::span<events::TrackObservation> restored) {
   if (restored.empty()) return;
   if (std::ranges::all_of(windows, [](const ObservedWindow& window) { return window.half_s == 0.0f; })) return;
   const ShakeEstimator estimator(lens, seen, windows);

@@ -31,8 +31,8 @@ inline constexpr TimeNs kShakeMargin = kNsPerSecond / 2;
 /// Frames must be evenly spaced; where they are more than 25 ms apart they cannot show a shake and nothing changes.
 /// `seen`: all observations of the stretch and its margins, in order of time; `windows`: of each of them. `restored`:
 /// those of the stretch, a copy of `seen` from index `first` on.
-void RestoreShake(const geometry::Camera& camera, const JacobianTable& lens, std::span<const events::TrackObservation> seen,
-                  std::span<const ObservedWindow> windows, std::size_t first,
-                  std::span<events::TrackObservation> restored);
+void RestoreShake(const geometry::Camera& camera, const JacobianTable& lens,
+                  std::span<const events::TrackObservation> seen, std::span<const ObservedWindow> windows,
+                  std::size_t first, std::span<events::TrackObservation> restored);
 
 }  // namespace evo::tracking
