@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "evo/core/bilinear.hpp"
 #include "tracking/patch/em_flow.hpp"
 
 namespace evo::tracking {
@@ -150,14 +151,13 @@ void FlowField::FillUnknown() {
 Eigen::Vector2d FlowField::At(double x, double y) const {
   const double column = std::clamp(x / kCellPx - 0.5, 0.0, columns_ - 1.001);
   const double row = std::clamp(y / kCellPx - 0.5, 0.0, rows_ - 1.001);
-  const int c = static_cast<int>(column);
-  const int r = static_cast<int>(row);
-  const double fx = column - c;
-  const double fy = row - r;
+  const BilinearCell<double> at(column, row);
   const auto flow = [&](int dr, int dc) -> const Eigen::Vector2d& {
-    return cells_[static_cast<std::size_t>((r + dr) * columns_ + c + dc)].flow;
+    return cells_[static_cast<std::size_t>((at.row + dr) * columns_ + at.column + dc)].flow;
   };
-  return (1 - fy) * ((1 - fx) * flow(0, 0) + fx * flow(0, 1)) + fy * ((1 - fx) * flow(1, 0) + fx * flow(1, 1));
+  // Not InterpolateBilinear, whose rounding differs.
+  return (1 - at.fy) * ((1 - at.fx) * flow(0, 0) + at.fx * flow(0, 1)) +
+         at.fy * ((1 - at.fx) * flow(1, 0) + at.fx * flow(1, 1));
 }
 
 }  // namespace evo::tracking

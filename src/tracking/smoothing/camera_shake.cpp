@@ -7,6 +7,7 @@
 #include <numeric>
 #include <vector>
 
+#include "evo/core/robust.hpp"
 #include "tracking/patch/simd8.hpp"
 
 namespace evo::tracking {
@@ -252,7 +253,7 @@ class ShakeEstimator {
         if (difference.weights[k] != 0.0f) shake += difference.weights[k] * coefficients_[difference.first + k];
       }
       const Eigen::Vector2f left = difference.value - difference.jacobian * shake.cast<float>();
-      equations.Add(difference, 1.0 / (1.0 + left.squaredNorm() / (kUsualDifferencePx * kUsualDifferencePx)));
+      equations.Add(difference, CauchyWeight(left.squaredNorm() / (kUsualDifferencePx * kUsualDifferencePx)));
     }
     coefficients_ = equations.Solve();
   }
@@ -267,9 +268,9 @@ class ShakeEstimator {
 
 }  // namespace
 
-void RestoreShake(const geometry::Camera& camera, const JacobianTable& lens, std::span<const events::TrackObservation> seen,
-                  std::span<const ObservedWindow> windows, std::size_t first,
-                  std::span<events::TrackObservation> restored) {
+void RestoreShake(const geometry::Camera& camera, const JacobianTable& lens,
+                  std::span<const events::TrackObservation> seen, std::span<const ObservedWindow> windows,
+                  std::size_t first, std::span<events::TrackObservation> restored) {
   if (restored.empty()) return;
   if (std::ranges::all_of(windows, [](const ObservedWindow& window) { return window.half_s == 0.0f; })) return;
   const ShakeEstimator estimator(lens, seen, windows);
