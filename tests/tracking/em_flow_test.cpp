@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tracking/detection/flow_field.hpp"
+#include "tracking/detection/flow_estimation.hpp"
 #include "tracking/patch_events.hpp"
 #include "tracking/synthetic_events.hpp"
 
@@ -50,7 +50,7 @@ TEST(EstimateFlow, FindsSlowAndFastFlowsFromZero) {
     for (int x = 25; x < scene.width - 20; x += 8) {
       for (int y = 25; y < scene.height - 20; y += 8) {
         Vector2d flow = Vector2d::Zero();
-        if (!EstimateFlow(history, 100'000'000, x, y, options, &flow)) continue;
+        if (!EstimateFlow(history, 100'000'000, Vector2d(x, y), options, &flow)) continue;
         ++estimated;
         // The arms of a slow cross stay in one row of pixels for most of a window, which costs some px/s.
         if ((flow - truth).norm() < 0.12 * truth.norm() + 8.0) ++good;
@@ -64,7 +64,7 @@ TEST(EstimateFlow, FindsSlowAndFastFlowsFromZero) {
 TEST(EstimateFlow, FailsWithoutEvents) {
   const events::EventHistory history(50, 50);
   Vector2d flow = Vector2d::Zero();
-  EXPECT_FALSE(EstimateFlow(history, 0, 25, 25, TrackerOptions{}, &flow));
+  EXPECT_FALSE(EstimateFlow(history, 0, {25.0, 25.0}, TrackerOptions{}, &flow));
 }
 
 }  // namespace

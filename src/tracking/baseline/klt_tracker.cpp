@@ -43,21 +43,24 @@ KltTracker::KltTracker(int width, int height, const TrackerOptions& options, Thr
 
 cv::Mat KltTracker::EventImage(const events::EventHistory& history, TimeNs t) const {
   cv::Mat image = cv::Mat::zeros(history.height(), history.width(), CV_32F);
-  const TimeNs begin = history.BeginOfNewest(t - before(), t, static_cast<std::size_t>(options_.klt.events));
+  const TimeNs begin = history.NewestWindowBegin(t - before(), t, static_cast<std::size_t>(options_.klt.events));
   history.ForEachBetween(std::max(begin, t - before()), t,
                          [&](int x, int y, TimeNs, std::int8_t) { image.at<float>(y, x) += 1.0f; });
   return image;
 }
 
-void KltTracker::Process(const events::EventHistory& history, TimeNs t, const std::function<void()>& /*read_ahead*/) {
-  const cv::Mat events = EventImage(history, t);
+void KltTracker::Track(const events::EventHistory& history, TimeNs t) {
+  events_ = EventImage(history, t);
   std::vector<cv::Mat> pyramid;
-  cv::buildOpticalFlowPyramid(ToGray(events), pyramid, patch_, kPyramidLevels);
+  cv::buildOpticalFlowPyramid(ToGray(events_), pyramid, patch_, kPyramidLevels);
   if (!features_.empty()) Follow(pyramid);
   pyramid_ = std::move(pyramid);
   last_ = t;
-  detected_ = refill_.IsDue(features_.size());
-  if (detected_) Refill(events);
+}
+
+void KltTracker::UpdateFeatures(const events::EventHistory& /*history*/) {
+  is_key_frame_ = refill_.IsDue(features_.size());
+  if (is_key_frame_) Refill();
 }
 
 void KltTracker::Follow(const std::vector<cv::Mat>& pyramid) {
@@ -83,12 +86,12 @@ void KltTracker::Follow(const std::vector<cv::Mat>& pyramid) {
   std::erase_if(features_, [](const Feature& feature) { return !feature.alive; });
 }
 
-void KltTracker::Refill(const cv::Mat& events) {
+void KltTracker::Refill() {
   std::vector<Eigen::Vector2d> taken;
   for (const auto& feature : features_) taken.emplace_back(feature.position.x, feature.position.y);
   const int missing = options_.features - static_cast<int>(features_.size());
   for (const auto& corner :
-       DetectCorners(events, taken, missing, 0.0, options_, pool_, [](const auto&) { return true; })) {
+       DetectCorners(events_, taken, missing, 0.0, options_, pool_, [](const auto&) { return true; })) {
     features_.push_back(
         {next_id_++, cv::Point2f(static_cast<float>(corner.x()), static_cast<float>(corner.y())), true});
   }

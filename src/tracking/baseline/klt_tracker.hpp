@@ -3,6 +3,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "tracking/detection/refill_policy.hpp"
 #include "tracking/tracker.hpp"
 
 namespace evo::tracking {
@@ -18,13 +19,15 @@ class KltTracker : public Tracker {
  public:
   KltTracker(int width, int height, const TrackerOptions& options, ThreadPool* pool);
 
-  void Process(const events::EventHistory& history, TimeNs t, const std::function<void()>& read_ahead) override;
+  void Track(const events::EventHistory& history, TimeNs t) override;
+  void EstimateMotion() override {}
+  void UpdateFeatures(const events::EventHistory& history) override;
   TimeNs before() const override { return FromSeconds(options_.klt.max_window_s); }
   TimeNs after() const override { return 0; }
   events::Tracks Observations() const override;
-  std::vector<std::int64_t> Withdrawn() const override { return {}; }
+  std::vector<std::int64_t> Rejected() const override { return {}; }
   std::vector<ObservedWindow> Windows() const override { return std::vector<ObservedWindow>(features_.size()); }
-  bool detected() const override { return detected_; }
+  bool is_key_frame() const override { return is_key_frame_; }
 
  private:
   struct Feature {
@@ -36,7 +39,7 @@ class KltTracker : public Tracker {
   cv::Mat EventImage(const events::EventHistory& history, TimeNs t) const;
   /// Moves the features from the last image to that of `pyramid`, and drops those whose return track ends elsewhere.
   void Follow(const std::vector<cv::Mat>& pyramid);
-  void Refill(const cv::Mat& events);
+  void Refill();
 
   TrackerOptions options_;
   int width_;
@@ -44,11 +47,12 @@ class KltTracker : public Tracker {
   cv::Size patch_;
   ThreadPool* pool_;
   RefillPolicy refill_;
+  cv::Mat events_;                // image of the frame
   std::vector<cv::Mat> pyramid_;  // of the last frame
   std::vector<Feature> features_;
   std::int64_t next_id_ = 0;
   TimeNs last_ = 0;
-  bool detected_ = false;
+  bool is_key_frame_ = false;
 };
 
 }  // namespace evo::tracking

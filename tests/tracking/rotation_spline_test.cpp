@@ -1,4 +1,4 @@
-#include "tracking/smoothing/camera_shake.hpp"
+#include "tracking/smoothing/rotation_spline.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,23 +16,23 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kSmearS = 0.016;
+constexpr double kSensorBlurS = 0.016;
 
-/// Points far away, seen by a camera that turns slowly and vibrates; each position is the mean over a window, each flow
-/// the slope over it. The sensor smears positions like a longer window.
-struct ShakyTracks {
+/// Distant points, observed by a camera that rotates slowly and vibrates. Each position is the mean, and each flow the
+/// slope, over a window. The sensor blurs positions like a longer window.
+struct VibratingTracks {
   geometry::Camera camera{geometry::MvsecDavis346()};
   double amplitude_rad = 0.002;
   double frequency_hz = 12.0;
   events::Tracks smoothed, exact;
   std::vector<ObservedWindow> windows;
 
-  Vector3d Turn(double t) const {
-    const double shake = amplitude_rad * std::sin(2.0 * M_PI * frequency_hz * t);
-    return {0.004 * std::sin(2.0 * t) + shake, 0.02 * t + 0.5 * shake, 0.0};
+  Vector3d Rotation(double t) const {
+    const double vibration = amplitude_rad * std::sin(2.0 * M_PI * frequency_hz * t);
+    return {0.004 * std::sin(2.0 * t) + vibration, 0.02 * t + 0.5 * vibration, 0.0};
   }
 
-  explicit ShakyTracks(double noise_px, double amplitude = 0.002, double frame_s = 0.02, double duration_s = 8.0)
+  explicit VibratingTracks(double noise_px, double amplitude = 0.002, double frame_s = 0.02, double duration_s = 8.0)
       : amplitude_rad(amplitude) {
     std::mt19937 random(7);
     const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
@@ -47,16 +47,16 @@ struct ShakyTracks {
         Vector2d mean = Vector2d::Zero(), slope = Vector2d::Zero();
         constexpr int kSteps = 40;
         for (int k = 0; k < kSteps; ++k) {
-          const double share = (k + 0.5) * 2.0 / kSteps - 1.0;
+          const double phase = (k + 0.5) * 2.0 / kSteps - 1.0;
           const auto seen = [&](double reach) {
-            return camera.Project(geometry::so3::Exp(Turn(t + reach * share)) * rays[i]);
+            return camera.Project(geometry::so3::Exp(Rotation(t + reach * phase)) * rays[i]);
           };
-          mean += seen(std::hypot(half, kSmearS)) / kSteps;
-          slope += 3.0 * share / half * seen(half) / kSteps;
+          mean += seen(std::hypot(half, kSensorBlurS)) / kSteps;
+          slope += 3.0 * phase / half * seen(half) / kSteps;
         }
         mean += noise_px * Vector2d(uniform() - 0.5, uniform() - 0.5);
         slope += noise_px / half * Vector2d(uniform() - 0.5, uniform() - 0.5);
-        const Vector2d now = camera.Project(geometry::so3::Exp(Turn(t)) * rays[i]);
+        const Vector2d now = camera.Project(geometry::so3::Exp(Rotation(t)) * rays[i]);
         smoothed.push_back({static_cast<std::int64_t>(i), FromSeconds(t), mean.x(), mean.y()});
         exact.push_back({static_cast<std::int64_t>(i), FromSeconds(t), now.x(), now.y()});
         windows.push_back({static_cast<float>(half), slope.cast<float>()});
@@ -78,16 +78,16 @@ struct ShakyTracks {
   }
 };
 
-/// All of them, taken for one stretch.
-events::Tracks Restored(const ShakyTracks& scene) {
+/// All observations, as one segment.
+events::Tracks Restored(const VibratingTracks& scene) {
   events::Tracks restored = scene.smoothed;
-  RestoreShake(scene.camera, JacobianTable(scene.camera), scene.smoothed, scene.windows, 0, restored);
+  RestoreRotation(scene.camera, JacobianTable(scene.camera), scene.smoothed, scene.windows, 0, restored);
   return restored;
 }
 
-/// Through a buffer, frame by frame.
-events::Tracks RestoredInPassing(const geometry::Camera& camera, const events::Tracks& smoothed,
-                                 std::span<const ObservedWindow> windows, int threads) {
+/// All observations, frame by frame through a buffer.
+events::Tracks RestoredByBuffer(const geometry::Camera& camera, const events::Tracks& smoothed,
+                                std::span<const ObservedWindow> windows, int threads) {
   ThreadPool pool(threads);
   events::Tracks restored;
   TrackBuffer buffer(camera, {}, &pool,
@@ -101,45 +101,45 @@ events::Tracks RestoredInPassing(const geometry::Camera& camera, const events::T
   return restored;
 }
 
-TEST(RestoreShake, GivesBackWhatLongWindowsSmoothAway) {
-  const ShakyTracks scene(0.1);
+TEST(RestoreRotation, RestoresWhatLongWindowsAverageAway) {
+  const VibratingTracks scene(0.1);
   EXPECT_GT(scene.Error(scene.smoothed), 0.25);
   EXPECT_LT(scene.Error(Restored(scene)), 0.4 * scene.Error(scene.smoothed));
 }
 
-TEST(RestoreShake, DoesSoForShortFramesToo) {
+TEST(RestoreRotation, WorksWithShortFrames) {
   for (const double frame_s : {0.005, 0.01, 0.025}) {
-    const ShakyTracks scene(0.1, 0.002, frame_s);
+    const VibratingTracks scene(0.1, 0.002, frame_s);
     EXPECT_LT(scene.Error(Restored(scene)), 0.55 * scene.Error(scene.smoothed)) << frame_s;
   }
 }
 
-TEST(RestoreShake, DoesSoInPassingForAnyNumberOfThreads) {
-  const ShakyTracks scene(0.1, 0.002, 0.02, 24.0);
-  const events::Tracks one = RestoredInPassing(scene.camera, scene.smoothed, scene.windows, 1);
-  const events::Tracks three = RestoredInPassing(scene.camera, scene.smoothed, scene.windows, 3);
+TEST(RestoreRotation, WorksThroughABufferForAnyNumberOfThreads) {
+  const VibratingTracks scene(0.1, 0.002, 0.02, 24.0);
+  const events::Tracks one = RestoredByBuffer(scene.camera, scene.smoothed, scene.windows, 1);
+  const events::Tracks three = RestoredByBuffer(scene.camera, scene.smoothed, scene.windows, 3);
   ASSERT_EQ(one.size(), scene.smoothed.size());
   EXPECT_TRUE(one == three);
-  for (double from = 0.0; from < 24.0; from += 2.5) {  // also where stretches meet
+  for (double from = 0.0; from < 24.0; from += 2.5) {  // also where segments meet
     EXPECT_LT(scene.Error(one, from, from + 2.5), 0.5 * scene.Error(scene.smoothed, from, from + 2.5)) << from;
   }
 }
 
-TEST(RestoreShake, LeavesAloneWhatTellsNothing) {
-  const ShakyTracks slow(0.1, 0.002, 0.04);
+TEST(RestoreRotation, LeavesUninformativeTracksUnchanged) {
+  const VibratingTracks slow(0.1, 0.002, 0.04);
   EXPECT_TRUE(Restored(slow) == slow.smoothed);
   // A gap of an hour, equal stamps, a window longer than any.
   const TimeNs hour = 3600 * kNsPerSecond;
   const events::Tracks few = {{1, 0, 100, 100}, {1, 0, 101, 100}, {1, hour, 102, 100}, {2, hour, 5, 5}};
   const std::vector<ObservedWindow> windows(few.size(), {1.0f, {50.0f, 0.0f}});
-  const events::Tracks restored = RestoredInPassing(slow.camera, few, windows, 1);
-  ASSERT_EQ(restored.size(), 3u);  // a feature seen once is none
+  const events::Tracks restored = RestoredByBuffer(slow.camera, few, windows, 1);
+  ASSERT_EQ(restored.size(), 3u);  // a feature observed once is dropped
   EXPECT_EQ(restored[2].x, 102);
 }
 
-TEST(RestoreShake, FramesMayFollowOneAnotherMuchSoonerThanTheFirstTwo) {
-  // So that differences over a fraction of a knot end at the last one.
-  ShakyTracks scene(0.1, 0.002, 0.001, 0.2);
+TEST(RestoreRotation, AcceptsFramesCloserThanTheFirstTwo) {
+  // Differences over a fraction of a knot then end at the last one.
+  VibratingTracks scene(0.1, 0.002, 0.001, 0.2);
   for (auto& observation : scene.smoothed) {
     if (observation.t == 0) observation.t -= 19'000'000;
   }
@@ -147,16 +147,16 @@ TEST(RestoreShake, FramesMayFollowOneAnotherMuchSoonerThanTheFirstTwo) {
   EXPECT_LT(scene.Error(restored, 0.001), 2.0 * scene.Error(scene.smoothed, 0.001));
 }
 
-TEST(RestoreShake, HardlyDisturbsASteadyCamera) {
-  const ShakyTracks scene(0.1, 0.0);
+TEST(RestoreRotation, HardlyDisturbsASteadyCamera) {
+  const VibratingTracks scene(0.1, 0.0);
   EXPECT_LT(scene.Error(Restored(scene)), scene.Error(scene.smoothed) + 0.02);
 }
 
-TEST(RestoreShake, LeavesInstantsAlone) {
-  ShakyTracks scene(0.1);
+TEST(RestoreRotation, LeavesInstantsUnchanged) {
+  VibratingTracks scene(0.1);
   scene.windows.assign(scene.windows.size(), {});
   EXPECT_TRUE(Restored(scene) == scene.smoothed);
-  RestoreShake(scene.camera, JacobianTable(scene.camera), {}, {}, 0, {});
+  RestoreRotation(scene.camera, JacobianTable(scene.camera), {}, {}, 0, {});
 }
 
 }  // namespace
