@@ -33,9 +33,9 @@ TEST_F(PipelineTest, NightMeetsItsBounds) {
 
 TEST_F(PipelineTest, OutliersAreRejectedWithAllTheirObservations) {
   // The spline fits all tracks at once and would change the others.
-  const std::string track = "track " + WithoutTruth() + "-q --set tracker.rotation_spline=false";
-  ASSERT_EQ(Run(track + " --set tracker.rejection_ratio=0" + Out("all")), 0) << err;
-  ASSERT_EQ(Run(track + " --set tracker.rejection_ratio=0.2" + Out("kept")), 0) << err;
+  const std::string words = "track " + WithoutTruth() + "-q --set tracker.rotation_spline=false";
+  ASSERT_EQ(Run(words + " --set tracker.rejection_ratio=0" + Out("all")), 0) << err;
+  ASSERT_EQ(Run(words + " --set tracker.rejection_ratio=0.2" + Out("kept")), 0) << err;
   std::map<std::int64_t, events::Tracks> all, kept;
   for (const auto& observation : io::ReadTracks(folder / "all" / "tracks.txt"))
     all[observation.id].push_back(observation);
