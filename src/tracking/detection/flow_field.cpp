@@ -96,6 +96,7 @@ Eigen::Vector2d FlowField::Interpolate(const Eigen::Vector2d& position) const {
   const auto flow = [&](int dr, int dc) -> const Eigen::Vector2d& {
     return cells_[static_cast<std::size_t>((at.row + dr) * columns_ + at.column + dc)].flow;
   };
+  // Not InterpolateBilinear, whose rounding differs.
   return (1 - at.fy) * ((1 - at.fx) * flow(0, 0) + at.fx * flow(0, 1)) +
          at.fy * ((1 - at.fx) * flow(1, 0) + at.fx * flow(1, 1));
 }
