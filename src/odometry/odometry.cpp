@@ -6,6 +6,13 @@
 #include <string>
 
 #include "evo/core/error.hpp"
+#include "evo/core/parallel.hpp"
+#include "evo/odometry/resampling.hpp"
+#include "odometry/bundle/final_refinement.hpp"
+#include "odometry/frontend/frame_builder.hpp"
+#include "odometry/frontend/frame_handler.hpp"
+#include "odometry/scale/ground_scale.hpp"
+#include "odometry/segment.hpp"
 
 namespace evo::odometry {
 
@@ -77,13 +84,6 @@ void ListLost(const std::vector<Frame>& frames, OdometryResult* result) {
 }
 
 }  // namespace
-
-void Register(Parameters& parameters, OdometryOptions& options) {
-  Register(parameters, options.resampling);
-  Register(parameters, options.frame_handler);
-  Register(parameters, options.final_refinement);
-  Register(parameters, options.ground);
-}
 
 OdometryResult RunOdometry(const events::Tracks& tracks, const geometry::Camera& camera, const OdometryOptions& options,
                            int threads, const OdometryProgress& progress) {

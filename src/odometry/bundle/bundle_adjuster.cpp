@@ -1,4 +1,4 @@
-#include "evo/odometry/bundle_adjuster.hpp"
+#include "odometry/bundle/bundle_adjuster.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -33,7 +33,7 @@ bool Error(const geometry::SE3& T_cam_anchor, const Eigen::Vector3d& inverse_dep
            const BundleObservation& observation, Eigen::Vector2d* error) {
   const Eigen::Vector3d y = ScaledInCamera(T_cam_anchor, inverse_depth);
   if (!(y.z() > 0.0)) return false;
-  *error = observation.px_per_unit * (observation.x - y.head<2>() / y.z());
+  *error = observation.J_pixel_normalized * (observation.x - y.head<2>() / y.z());
   return true;
 }
 
@@ -213,10 +213,10 @@ bool Linearize(const geometry::SE3& T_cam_anchor, const Eigen::Vector3d& inverse
   const Eigen::Vector3d y = ScaledInCamera(T_cam_anchor, inverse_depth);
   if (!(y.z() > 0.0)) return false;
   const Eigen::Vector2d projection = y.head<2>() / y.z();
-  jacobian->error = observation.px_per_unit * (observation.x - projection);
+  jacobian->error = observation.J_pixel_normalized * (observation.x - projection);
   Eigen::Matrix<double, 2, 3> by_y;
   by_y << 1.0, 0.0, -projection.x(), 0.0, 1.0, -projection.y();
-  by_y = observation.px_per_unit * by_y / -y.z();
+  by_y = observation.J_pixel_normalized * by_y / -y.z();
   jacobian->by_pose.leftCols<3>() = inverse_depth.z() * by_y;
   jacobian->by_pose.rightCols<3>().noalias() = -by_y * geometry::so3::Hat(y);
   jacobian->by_point.leftCols<2>().noalias() = by_y * T_cam_anchor.RotationMatrix().leftCols<2>();

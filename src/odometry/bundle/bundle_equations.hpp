@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "evo/odometry/bundle_adjuster.hpp"
 #include "odometry/bundle/block_skyline.hpp"
+#include "odometry/bundle/bundle_adjuster.hpp"
 #include "odometry/bundle/track_noise.hpp"
 
 namespace evo::odometry {

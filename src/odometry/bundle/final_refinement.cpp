@@ -1,4 +1,4 @@
-#include "evo/odometry/final_refinement.hpp"
+#include "odometry/bundle/final_refinement.hpp"
 
 #include <spdlog/spdlog.h>
 
@@ -8,11 +8,11 @@
 #include <unordered_map>
 
 #include "evo/core/median.hpp"
-#include "evo/odometry/bundle_adjuster.hpp"
-#include "evo/odometry/pose_optimizer.hpp"
-#include "evo/odometry/pose_uncertainty.hpp"
+#include "odometry/bundle/bundle_adjuster.hpp"
 #include "odometry/bundle/run_bundle.hpp"
 #include "odometry/bundle/track_weights.hpp"
+#include "odometry/frontend/pose_optimizer.hpp"
+#include "odometry/uncertainty/pose_uncertainty.hpp"
 
 namespace evo::odometry {
 
@@ -39,11 +39,12 @@ void DropContradictions(BundleProblem* problem) {
 /// Rounds of adjustment, each with the noise that the one before has left; returns the last round's options.
 BundleOptions Adjust(const FinalRefinementOptions& options, const std::function<void(double)>& progress,
                      const std::vector<double>& t, ThreadPool* pool, BundleProblem* problem) {
-  BundleOptions last{.iterations = options.iterations, .drift = options.drift};
+  BundleOptions last{.iterations = options.iterations, .drift = options.drift_variance_ratio};
   for (int round = 0; round < options.rounds; ++round) {
-    if (options.own_noise && round > 0) WeighTracks(options.drift, problem);
-    const double sigma_px = MeasureNoise(BundleInnovations(*problem, options.drift));
-    if (options.motion > 0.0) problem->motion = MeasureMotion(problem->T_cam_world, t, options.motion, sigma_px);
+    if (options.track_noise && round > 0) WeighTracks(options.drift_variance_ratio, problem);
+    const double sigma_px = MeasureNoise(BundleInnovations(*problem, options.drift_variance_ratio));
+    if (options.velocity_change_scale > 0.0)
+      problem->motion = MeasureMotion(problem->T_cam_world, t, options.velocity_change_scale, sigma_px);
     last.loss_px = kCauchyEfficient * sigma_px;
     const auto summary = AdjustBundle(last, problem, pool);
     spdlog::debug(
@@ -71,7 +72,7 @@ class RefinedPoints {
       if (found == pieces_.end()) continue;
       auto piece = std::ranges::upper_bound(found->second, index, {}, [](const Piece& p) { return p.drifts[0].first; });
       if (piece != found->second.begin()) --piece;
-      observations.push_back({piece->position, feature.x - Drift(*piece, index), feature.px_per_unit});
+      observations.push_back({piece->position, feature.x - Drift(*piece, index), feature.J_pixel_normalized});
     }
     return optimizer_.Optimize(observations, start);
   }
@@ -109,7 +110,7 @@ RefinedPoints TakePoints(const RunBundle& run, double drift, Segment* segment) {
     Point& point = points[observation.point];
     ++(errors[i].norm() < kOutlierSigmas * sigma_px ? point.inliers : point.outliers);
     histories[observation.point].emplace_back(segment->frames[run.frames[observation.frame]],
-                                              observation.px_per_unit.inverse() * drifts[i]);
+                                              observation.J_pixel_normalized.inverse() * drifts[i]);
   }
   RefinedPoints refined;
   segment->points.clear();
@@ -199,34 +200,6 @@ class PoseFiller {
 
 }  // namespace
 
-void Register(Parameters& parameters, FinalRefinementOptions& options) {
-  parameters.Add("odometry.final_refinement", &options.enabled, "bundle-adjust the whole run at the end");
-  parameters.Add("odometry.final.min_disparity_px", &options.min_disparity_px, 0, 100,
-                 "image motion in px between the frames that take part");
-  parameters.Add("odometry.final.drift", &options.drift, 0, 100,
-                 "variance by which tracks drift from frame to frame, over that of their noise");
-  parameters.Add("odometry.final.motion", &options.motion, 0, 1000,
-                 "velocity is expected to change so many times as much as usual; 0: no matter how much");
-  parameters.Add("odometry.final.own_noise", &options.own_noise, "a track counts as much as its own noise lets it");
-  parameters.Add("odometry.final.iterations", &options.iterations, 1, 1000, "iterations of each round");
-  parameters.Add("odometry.final.rounds", &options.rounds, 1, 100, "rounds, the noise measured anew before each");
-  parameters.Add("odometry.final.budget", &options.budget, 1e3, 1e12,
-                 "block products an iteration may cost before frames are thinned out");
-  Register(parameters, options.common_errors);
-}
-
-std::vector<geometry::Matrix6d> Segment::Covariances(bool scale_is_free) const {
-  std::vector<geometry::Matrix6d> covariances;
-  if (adjusted.empty() || !uncertainty.known()) return covariances;
-  const auto of_adjusted = uncertainty.Covariances(0, scale_is_free);
-  std::size_t k = 0;
-  for (std::size_t i = 0; i < besides.size(); ++i) {
-    while (k + 1 < adjusted.size() && adjusted[k + 1] <= i) ++k;
-    covariances.push_back(of_adjusted[k] + besides[i]);
-  }
-  return covariances;
-}
-
 void RefineSegment(const FinalRefinementOptions& options, const std::vector<Frame>& frames, int before, int after,
                    const std::function<void(double)>& progress, ThreadPool* pool, Segment* segment) {
   RunBundle run = BuildRunBundle(options, frames, *segment);
@@ -235,11 +208,11 @@ void RefineSegment(const FinalRefinementOptions& options, const std::vector<Fram
     t.push_back(ToSeconds(frames[segment->frames[place]].t - frames[segment->frames.front()].t));
   }
   const BundleOptions adjusted = Adjust(options, progress, t, pool, &run.bundle);
-  segment->uncertainty = PoseUncertainty(options.common_errors, adjusted, run.bundle, pool);
+  segment->uncertainty = PoseUncertainty(options.covariance, adjusted, run.bundle, pool);
   const auto [first, end] = segment->uncertainty.CertainStretch();
   segment->uncertainty.Cut(first, end);
-  const RefinedPoints points = TakePoints(run, options.drift, segment);
-  PoseFiller filler(frames, points, options.common_errors.alike);
+  const RefinedPoints points = TakePoints(run, options.drift_variance_ratio, segment);
+  PoseFiller filler(frames, points, options.covariance.variance_inflation);
   const auto& poses = run.bundle.T_cam_world;
   const int end_frame = 1 + segment->frames[end == poses.size() ? segment->frames.size() - 1 : run.frames[end - 1]];
   for (std::size_t k = first; k < end; ++k) {

@@ -87,7 +87,7 @@ RunBundle BuildProblem(const std::vector<Frame>& frames, const Segment& segment,
     problem.tracks.push_back(track);
     problem.bundle.points.push_back(InitialPoint(sightings, problem.bundle.T_cam_world, far));
     for (const auto& [frame, feature] : sightings) {
-      problem.bundle.observations.push_back({frame, id, feature->x, feature->px_per_unit});
+      problem.bundle.observations.push_back({frame, id, feature->x, feature->J_pixel_normalized});
     }
   }
   return problem;
@@ -116,7 +116,7 @@ RunBundle BuildRunBundle(const FinalRefinementOptions& options, const std::vecto
       RunBundle problem = BuildProblem(frames, segment, EveryNth(moving, n), span, kFarShare * mean_inverse_depth);
       problem.bundle.scale_frame = FarthestFrame(problem.bundle);
       const double cost = BlockSkyline::Cost(BundleSkyline(problem.bundle));
-      if (cost <= options.budget || problem.frames.size() <= 2) return problem;
+      if (cost <= options.max_block_products || problem.frames.size() <= 2) return problem;
     }
   }
 }

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "evo/odometry/bundle_adjuster.hpp"
-#include "evo/odometry/final_refinement.hpp"
+#include "odometry/bundle/bundle_adjuster.hpp"
+#include "odometry/bundle/final_refinement.hpp"
 
 namespace evo::odometry {
 

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "evo/odometry/bundle_adjuster.hpp"
+#include "odometry/bundle/bundle_adjuster.hpp"
 
 namespace evo::odometry {
 

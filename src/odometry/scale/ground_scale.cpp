@@ -1,4 +1,4 @@
-#include "evo/odometry/ground_scale.hpp"
+#include "odometry/scale/ground_scale.hpp"
 
 #include <spdlog/spdlog.h>
 
@@ -80,7 +80,7 @@ std::optional<PoseHeights> MeasureHeights(const GroundOptions& options, const st
   for (int round = 0; round < 2; ++round) {
     if (!(window > 0.0)) return std::nullopt;
     const DrivenPath path(poses.positions, poses.down, window);
-    GroundProfileOptions profile_options{options.drift, path.length(), {}};
+    GroundProfileOptions profile_options{options.scale_drift_ratio, path.length(), {}};
     for (std::size_t i = 1; i < poses.begins.size(); ++i) {
       profile_options.breaks.push_back(path.Along(poses.begins[i]));
     }
@@ -149,16 +149,6 @@ void Rescale(const std::vector<double>& scales, double error, double reach, cons
 
 }  // namespace
 
-void Register(Parameters& parameters, GroundOptions& options) {
-  parameters.Add("odometry.ground.hold_height", &options.hold_height,
-                 "hold the height of the camera above the road, where it drives over one: no drift of the scale");
-  parameters.Add(
-      "odometry.ground.camera_height_m", &options.camera_height_m, 0, 100,
-      "height of the camera above the road (m), held and the scale taken from it; 0: the scale is arbitrary");
-  parameters.Add("odometry.ground.drift", &options.drift, 1e-6, 1,
-                 "relative change of the scale over a way of one camera height");
-}
-
 GroundScale ScaleByGround(const GroundOptions& options, const std::vector<Frame>& frames,
                           std::vector<Segment>* segments) {
   const auto heights = MeasureHeights(options, TriangulateTracks(frames, *segments), ListPoses(*segments));
@@ -173,7 +163,7 @@ GroundScale ScaleByGround(const GroundOptions& options, const std::vector<Frame>
   for (const double inverse : heights->inverse) scales.push_back(height * inverse);
   const GroundProfile& profile = heights->profile;
   // A random walk that is smoothed to an error of so much errs alike over so long a way.
-  const double reach = height * std::max(2.0 * kWindow, 2.0 * std::pow(profile.error / options.drift, 2));
+  const double reach = height * std::max(2.0 * kWindow, 2.0 * std::pow(profile.error / options.scale_drift_ratio, 2));
   Rescale(scales, std::hypot(profile.error, kErrAlike), reach, frames, segments);
   const auto [lowest, highest] = std::ranges::minmax(scales);
   const GroundScale scale{true, known, profile.tracks, profile.covered, profile.error, lowest, highest};

@@ -23,7 +23,7 @@ struct Sight {
 
 double PxPerUnit(const std::vector<Sight>& sights) {
   double sum = 0.0;
-  for (const Sight& sight : sights) sum += std::sqrt(std::abs(sight.feature->px_per_unit.determinant()));
+  for (const Sight& sight : sights) sum += std::sqrt(std::abs(sight.feature->J_pixel_normalized.determinant()));
   return sum / static_cast<double>(sights.size());
 }
 

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "evo/odometry/final_refinement.hpp"
-#include "evo/odometry/frame.hpp"
+#include "odometry/bundle/final_refinement.hpp"
+#include "odometry/frontend/frame.hpp"
 
 namespace evo::odometry {
 

@@ -1,4 +1,4 @@
-#include "evo/odometry/pose_uncertainty.hpp"
+#include "odometry/uncertainty/pose_uncertainty.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -63,15 +63,8 @@ std::vector<Eigen::Vector3d> Centres(const std::vector<geometry::SE3>& T_cam_wor
 
 }  // namespace
 
-void Register(Parameters& parameters, CommonErrors& options) {
-  parameters.Add("odometry.covariance.alike", &options.alike, 1, 1000,
-                 "of the tracks so many err alike, which makes all poses as much less certain");
-  parameters.Add("odometry.covariance.turn", &options.turn, 0, 1,
-                 "what all tracks may turn by together about each axis, as a share of their motion");
-}
-
-PoseUncertainty::PoseUncertainty(const CommonErrors& common, const BundleOptions& options, const BundleProblem& problem,
-                                 ThreadPool* pool)
+PoseUncertainty::PoseUncertainty(const CovarianceOptions& common, const BundleOptions& options,
+                                 const BundleProblem& problem, ThreadPool* pool)
     : certain_(0, problem.T_cam_world.size()),
       poses_(problem.T_cam_world),
       samples_(Eigen::MatrixXd::Zero(Row(problem.T_cam_world.size()), kSamples)) {
@@ -87,14 +80,14 @@ PoseUncertainty::PoseUncertainty(const CommonErrors& common, const BundleOptions
     for (double& sign : of_sample) sign = random.Next();
   }
   ForEachIndex(pool, kSamples, 1, [&](std::size_t k) {
-    const Eigen::VectorXd steps = std::sqrt(common.alike) * equations.StepsIf(signs[k]);
+    const Eigen::VectorXd steps = std::sqrt(common.variance_inflation) * equations.StepsIf(signs[k]);
     samples_.col(static_cast<Eigen::Index>(k)).tail(steps.size()) = steps;
   });
   certain_ = FindCertainStretch();
 
   // A turn of the whole image is taken for one of the camera, the whole path behind it turns along.
   Eigen::Matrix<double, 3, Eigen::Dynamic> axes(3, kSamples);
-  for (double& axis : axes.reshaped()) axis = common.turn * random.Next();
+  for (double& axis : axes.reshaped()) axis = common.rotation_bias_ratio * random.Next();
   const std::vector<double> motion = ImageMotion(problem);
   Rows turned = Rows::Zero(6, kSamples);
   for (std::size_t i = 1; i < poses_.size(); ++i) {

@@ -5,7 +5,7 @@
 
 #include "evo/core/parallel.hpp"
 #include "evo/geometry/se3.hpp"
-#include "evo/odometry/motion_prior.hpp"
+#include "odometry/bundle/motion_prior.hpp"
 
 namespace evo::odometry {
 
@@ -20,8 +20,8 @@ struct BundlePoint {
 struct BundleObservation {
   int frame = 0;
   int point = 0;
-  Eigen::Vector2d x;            ///< on the plane z = 1
-  Eigen::Matrix2d px_per_unit;  ///< see Feature
+  Eigen::Vector2d x;                   ///< on the plane z = 1
+  Eigen::Matrix2d J_pixel_normalized;  ///< see Feature
 };
 
 struct BundleProblem {

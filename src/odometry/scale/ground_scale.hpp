@@ -1,31 +1,13 @@
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
-#include "evo/core/parameters.hpp"
-#include "evo/odometry/final_refinement.hpp"
-#include "evo/odometry/frame.hpp"
+#include "evo/odometry/odometry_options.hpp"
+#include "evo/odometry/odometry_result.hpp"
+#include "odometry/frontend/frame.hpp"
+#include "odometry/segment.hpp"
 
 namespace evo::odometry {
-
-struct GroundOptions {
-  bool hold_height = true;       ///< above a road, even if it is not known
-  double camera_height_m = 0.0;  ///< of the camera above the road; 0: unknown, the scale stays arbitrary
-  double drift = 0.002;          ///< standard deviation of the scale's change over a way of one height, relative
-};
-void Register(Parameters& parameters, GroundOptions& options);
-
-/// What the ground has said about the scale.
-struct GroundScale {
-  bool found = false;      ///< else the scale is as arbitrary as before
-  bool metric = false;     ///< the height was known
-  std::size_t tracks = 0;  ///< on the ground
-  double covered = 0.0;    ///< share of the path where the scale is known within a percent
-  double error = 0.0;      ///< relative standard deviation of the scale, median over the path
-  double lowest = 0.0;     ///< metres (or new units) to a unit of the map, least and
-  double highest = 0.0;    ///< most along the path
-};
 
 /// Takes the slow drift of the scale along the path out, and the jump of the scale where the tracking was lost, by the
 /// height of the camera above the ground that it has driven over, which is constant; turns the run's unit into metres

@@ -5,19 +5,11 @@
 #include <vector>
 
 #include "evo/core/parallel.hpp"
-#include "evo/core/parameters.hpp"
 #include "evo/geometry/se3.hpp"
-#include "evo/odometry/bundle_adjuster.hpp"
+#include "evo/odometry/odometry_options.hpp"
+#include "odometry/bundle/bundle_adjuster.hpp"
 
 namespace evo::odometry {
-
-/// What the errors of tracks have in common. The residuals of an adjustment do not show it, since the poses have taken
-/// it up: it is a property of tracker and sensor, to be measured where the truth is known.
-struct CommonErrors {
-  double alike = 5.0;   ///< so many tracks err alike: they tell as much as one
-  double turn = 0.001;  ///< standard deviation of what all tracks turn by about each axis, over their motion
-};
-void Register(Parameters& parameters, CommonErrors& options);
 
 /// How far the poses of an adjusted bundle may be off, from what is left of the errors: H^-1 (sum over tracks of g g^T)
 /// H^-1, H the reduced system and g the part of its gradient of one track, or of one piece of a long track. So
@@ -28,7 +20,7 @@ class PoseUncertainty {
  public:
   PoseUncertainty() = default;
   /// At a minimum that AdjustBundle has found with the same options. Does not depend on the number of threads.
-  PoseUncertainty(const CommonErrors& common, const BundleOptions& options, const BundleProblem& problem,
+  PoseUncertainty(const CovarianceOptions& common, const BundleOptions& options, const BundleProblem& problem,
                   ThreadPool* pool = nullptr);
 
   /// [begin, end) of the poses without those at either end, at most a tenth of all, whose turn towards the others is
