@@ -3,7 +3,7 @@
 #include "evo/core/parameters.hpp"
 #include "evo/evaluation/evaluation.hpp"
 #include "evo/evaluation/track_truth.hpp"
-#include "evo/odometry/odometry.hpp"
+#include "evo/odometry/odometry_options.hpp"
 #include "evo/tracking/tracker_options.hpp"
 
 namespace evo::app {

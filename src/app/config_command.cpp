@@ -4,6 +4,7 @@
 #include "app/commands.hpp"
 #include "app/config.hpp"
 #include "app/options.hpp"
+#include "app/scene_config.hpp"
 #include "evo/core/error.hpp"
 
 namespace evo::app {
@@ -13,17 +14,31 @@ namespace {
 struct ConfigArguments {
   CommonOptions common;
   bool print = false;
+  bool markdown = false;
   std::string check;
 };
 
+void PrintMarkdown(const Parameters& parameters) {
+  std::cout
+      << "# Parameters\n\n"
+         "`evo-run config --markdown` writes this page. A parameter is given in a YAML file (`--config FILE`) or as "
+         "`--set NAME=VALUE`.\n\n"
+         "## Tracker, odometry and evaluation\n\n"
+      << parameters.ToMarkdown() << "\n## Scenes of `evo-run simulate`\n\n"
+      << SceneConfig().parameters.ToMarkdown();
+}
+
 void RunConfig(const ConfigArguments& arguments) {
-  if (arguments.print != arguments.check.empty()) {
-    throw Error(ErrorKind::kUsage, "config: give either --print or --check FILE; see evo-run config --help");
+  if (arguments.print + arguments.markdown + !arguments.check.empty() != 1) {
+    throw Error(ErrorKind::kUsage,
+                "config: give one of --print, --markdown and --check FILE; see evo-run config --help");
   }
   Config config;
   arguments.common.Apply(&config.parameters);
   if (arguments.print) {
     std::cout << config.parameters.ToYaml();
+  } else if (arguments.markdown) {
+    PrintMarkdown(config.parameters);
   } else {
     config.parameters.LoadFile(arguments.check);
     std::cout << arguments.check << ": every parameter is known and in range\n";
@@ -36,6 +51,8 @@ Command AddConfigCommand(CLI::App& app) {
   auto arguments = std::make_shared<ConfigArguments>();
   auto* const parser = app.add_subcommand("config", "Print all parameters or check a configuration file");
   parser->add_flag("--print", arguments->print, "print every parameter with its value, range and meaning as YAML");
+  parser->add_flag("--markdown", arguments->markdown,
+                   "print the tables of docs/parameters.md: every parameter of files and scenes");
   parser->add_option("--check", arguments->check, "report the first mistake in a configuration file")
       ->type_name("FILE");
   AddConfigurationOptions(*parser, arguments->common);

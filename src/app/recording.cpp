@@ -2,9 +2,9 @@
 
 #include <charconv>
 
-#include "evo/io/open_events.hpp"
 #include "evo/core/error.hpp"
 #include "evo/io/calibration_io.hpp"
+#include "evo/io/open_events.hpp"
 #include "evo/io/sequence.hpp"
 
 namespace evo::app {

@@ -9,6 +9,7 @@
 #include "app/options.hpp"
 #include "app/output_folder.hpp"
 #include "app/run_record.hpp"
+#include "app/scene_config.hpp"
 #include "app/sequence_output.hpp"
 #include "app/staged_folder.hpp"
 #include "evo/core/error.hpp"
@@ -30,20 +31,6 @@ struct SimulateArguments {
   std::optional<double> duration_s;
   double preview_every_s = 0.0;
   bool print = false;
-};
-
-/// All parameters of the command.
-struct SimulateConfig {
-  SimulateConfig() {
-    Register(parameters, scene);
-    Register(parameters, output);
-  }
-  SimulateConfig(const SimulateConfig&) = delete;  // the parameters refer to the fields
-  SimulateConfig& operator=(const SimulateConfig&) = delete;
-
-  simulation::SceneOptions scene;
-  OutputOptions output;
-  Parameters parameters;
 };
 
 /// The part of the scene that --from and --duration name.
@@ -88,7 +75,7 @@ void PrintFiles(const fs::path& out, const std::vector<std::string>& names) {
 
 /// What is to be made, checked.
 struct Order {
-  Order(const SimulateArguments& arguments, const SimulateConfig& config)
+  Order(const SimulateArguments& arguments, const SceneConfig& config)
       : format(arguments.format == "uzh" ? SequenceFormat::kUzh : SequenceFormat::kMvsec) {
     const simulation::SimulationOptions& simulation = config.scene.simulation;
     if (arguments.out.empty()) {
@@ -129,7 +116,7 @@ void AddCounts(const simulation::SimulationCounts& counts, RunRecord* record) {
 }
 
 void RunSimulate(const SimulateArguments& arguments, const std::vector<std::string>& command_line) {
-  SimulateConfig config;
+  SceneConfig config;
   arguments.common.Apply(&config.parameters);
   if (arguments.seed) config.scene.seed = *arguments.seed;
   if (arguments.print) {

@@ -5,10 +5,10 @@
 #include "app/error_place.hpp"
 #include "app/output_folder.hpp"
 #include "app/recording.hpp"
-#include "evo/io/track_io.hpp"
 #include "evo/core/error.hpp"
 #include "evo/core/format.hpp"
 #include "evo/core/output_file.hpp"
+#include "evo/io/track_io.hpp"
 #include "evo/odometry/resampling.hpp"
 #include "evo/report/figures.hpp"
 #include "evo/report/latex_tables.hpp"
@@ -110,8 +110,8 @@ void RemoveTrackEvaluationResults(const std::filesystem::path& folder) {
   RemovePlots(folder, "track_error|lifetime|lifetime_seconds");
 }
 
-TrackEvaluation EvaluateTracks(const TrackEvaluationArguments& arguments, const TruePoses& poses,
-                                           const Config& config, RunRecord* record) {
+TrackEvaluation EvaluateTracks(const TrackEvaluationArguments& arguments, const TruePoses& poses, const Config& config,
+                               RunRecord* record) {
   record->AddInput("tracks", arguments.tracks);
   if (!arguments.true_tracks.empty()) record->AddInput("true_tracks", arguments.true_tracks);
   if (!arguments.calibration.empty()) record->AddInput("calibration", arguments.calibration);

@@ -46,8 +46,8 @@ struct TrackEvaluation {
 };
 
 /// Reads and judges the tracks. Throws Error.
-TrackEvaluation EvaluateTracks(const TrackEvaluationArguments& arguments, const TruePoses& poses,
-                                           const Config& config, RunRecord* record);
+TrackEvaluation EvaluateTracks(const TrackEvaluationArguments& arguments, const TruePoses& poses, const Config& config,
+                               RunRecord* record);
 /// Removes those files and the plots from `folder`, and manifest.json, which tells of them.
 void RemoveTrackEvaluationResults(const std::filesystem::path& folder);
 /// Writes those files and plots/track_error, plots/lifetime and plots/lifetime_seconds. Throws Error.

@@ -1,5 +1,7 @@
 #include "evo/core/parameters.hpp"
 
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -10,9 +12,11 @@
 #include <iterator>
 #include <numeric>
 #include <set>
+#include <stdexcept>
 #include <utility>
 
 #include "evo/core/error.hpp"
+#include "evo/core/number.hpp"
 
 namespace evo {
 
@@ -27,13 +31,6 @@ bool ParseNumber(const std::string& text, Number* value) {
   const char* const end = text.data() + text.size();
   const auto [last, failure] = std::from_chars(text.data(), end, *value);
   return failure == std::errc() && last == end;
-}
-
-/// The shortest text that reads back as the same double.
-std::string FormatNumber(double value) {
-  char buffer[32];
-  const auto [end, failure] = std::to_chars(buffer, buffer + sizeof buffer, value);
-  return failure == std::errc() ? std::string(buffer, end) : "nan";
 }
 
 std::size_t EditDistance(std::string_view a, std::string_view b) {
@@ -52,25 +49,46 @@ std::size_t EditDistance(std::string_view a, std::string_view b) {
 }  // namespace
 
 void Parameters::Add(std::string name, double* value, double lowest, double highest, std::string help) {
-  entries_.push_back({std::move(name), value, lowest, highest, {}, std::move(help), {}, {}});
+  entries_.push_back({std::move(name), value, lowest, highest, {}, std::move(help), {}, {}, {}});
 }
 
 void Parameters::Add(std::string name, int* value, int lowest, int highest, std::string help) {
-  entries_.push_back(
-      {std::move(name), value, static_cast<double>(lowest), static_cast<double>(highest), {}, std::move(help), {}, {}});
+  entries_.push_back({std::move(name),
+                      value,
+                      static_cast<double>(lowest),
+                      static_cast<double>(highest),
+                      {},
+                      std::move(help),
+                      {},
+                      {},
+                      {}});
 }
 
 void Parameters::Add(std::string name, bool* value, std::string help) {
-  entries_.push_back({std::move(name), value, 0, 1, {}, std::move(help), {}, {}});
+  entries_.push_back({std::move(name), value, 0, 1, {}, std::move(help), {}, {}, {}});
 }
 
 void Parameters::Add(std::string name, std::string* value, std::vector<std::string> choices, std::string help) {
-  entries_.push_back({std::move(name), value, 0, 0, std::move(choices), std::move(help), {}, {}});
+  entries_.push_back({std::move(name), value, 0, 0, std::move(choices), std::move(help), {}, {}, {}});
 }
 
 void Parameters::Add(std::string name, std::string* value, std::function<bool(const std::string&)> valid,
                      std::string expected, std::string help) {
-  entries_.push_back({std::move(name), value, 0, 0, {}, std::move(help), std::move(valid), std::move(expected)});
+  entries_.push_back({std::move(name), value, 0, 0, {}, std::move(help), std::move(valid), std::move(expected), {}});
+}
+
+void Parameters::Alias(std::string old_name, std::string_view name) {
+  Entry* const entry = Find(name);
+  if (!entry) throw std::logic_error(fmt::format("alias '{}' of the unknown parameter '{}'", old_name, name));
+  entry->old_names.push_back(std::move(old_name));
+}
+
+const std::string& Parameters::CurrentName(const std::string& name) const {
+  const auto has_name = [&](const Entry& entry) {
+    return std::ranges::find(entry.old_names, name) != entry.old_names.end();
+  };
+  const auto found = std::ranges::find_if(entries_, has_name);
+  return found == entries_.end() ? name : found->name;
 }
 
 void Parameters::LoadFile(const std::filesystem::path& path) {
@@ -99,7 +117,11 @@ void Parameters::LoadText(const std::string& yaml, const std::string& source) {
     for (const auto& item : node) {
       const std::string name = prefix + item.first.Scalar();
       if (item.second.IsScalar()) {
-        if (!seen.insert(name).second) throw ConfigurationError(place(item.first.Mark()), "'" + name + "' comes twice");
+        const std::string& current = CurrentName(name);
+        if (!seen.insert(current).second) {
+          const std::string former = name == current ? "" : ", here by its former name '" + name + "'";
+          throw ConfigurationError(place(item.first.Mark()), "'" + current + "' comes twice" + former);
+        }
         Assign(name, item.second.Scalar(), place(item.first.Mark()));
       } else if (item.second.IsMap()) {
         visit(item.second, name + ".");
@@ -129,7 +151,9 @@ std::string Parameters::Nearest(std::string_view name) const {
   return nearest == entries_.end() ? "" : nearest->name;
 }
 
-void Parameters::Assign(const std::string& name, const std::string& text, const std::string& where) {
+void Parameters::Assign(const std::string& given_name, const std::string& text, const std::string& where) {
+  const std::string& name = CurrentName(given_name);
+  if (name != given_name) spdlog::warn("{}: parameter '{}' is now called '{}'", where, given_name, name);
   Entry* const entry = Find(name);
   if (!entry) {
     throw ConfigurationError(where, "unknown parameter '" + name + "'; did you mean '" + Nearest(name) + "'?");
@@ -162,58 +186,6 @@ void Parameters::Assign(const std::string& name, const std::string& text, const 
     }
     *std::get<std::string*>(entry->value) = text;
   }
-}
-
-std::string Parameters::Format(const Entry& entry) {
-  if (auto* const* number = std::get_if<double*>(&entry.value)) return FormatNumber(**number);
-  if (auto* const* integer = std::get_if<int*>(&entry.value)) return std::to_string(**integer);
-  if (auto* const* flag = std::get_if<bool*>(&entry.value)) return **flag ? "true" : "false";
-  return *std::get<std::string*>(entry.value);
-}
-
-std::string Parameters::Describe(const Entry& entry) {
-  std::string text = entry.help;
-  if (std::holds_alternative<double*>(entry.value) || std::holds_alternative<int*>(entry.value)) {
-    text += "; " + FormatNumber(entry.lowest) + " to " + FormatNumber(entry.highest);
-  }
-  if (entry.valid) text += "; " + entry.expected;
-  for (std::size_t i = 0; i < entry.choices.size(); ++i) text += (i ? ", " : "; ") + entry.choices[i];
-  return text;
-}
-
-/// What is called `prefix`NAME, then group by group what is called `prefix`GROUP.NAME: each key of the YAML occurs
-/// once, whatever the order of registration.
-void Parameters::Print(const std::string& prefix, const std::string& indent, std::string* yaml) const {
-  std::vector<std::string> groups;
-  for (const auto& entry : entries_) {
-    if (!entry.name.starts_with(prefix)) continue;
-    const std::string name = entry.name.substr(prefix.size());
-    const auto dot = name.find('.');
-    if (dot == std::string::npos) {
-      const auto* const* text = std::get_if<std::string*>(&entry.value);
-      const std::string value = text ? YAML::Dump(YAML::Node(**text)) : Format(entry);  // quoted where it must be
-      *yaml += indent + name + ": " + value + "  # " + Describe(entry) + '\n';
-    } else if (std::ranges::find(groups, name.substr(0, dot)) == groups.end()) {
-      groups.push_back(name.substr(0, dot));
-    }
-  }
-  for (const auto& group : groups) {
-    if (!yaml->empty()) *yaml += '\n';
-    *yaml += indent + group + ":\n";
-    Print(prefix + group + ".", indent + "  ", yaml);
-  }
-}
-
-std::string Parameters::ToYaml() const {
-  std::string yaml;
-  Print("", "", &yaml);
-  return yaml;
-}
-
-std::vector<std::pair<std::string, std::string>> Parameters::Values() const {
-  std::vector<std::pair<std::string, std::string>> values;
-  for (const auto& entry : entries_) values.emplace_back(entry.name, Format(entry));
-  return values;
 }
 
 }  // namespace evo

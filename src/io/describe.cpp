@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "evo/core/error.hpp"
+#include "evo/core/number.hpp"
 #include "evo/io/calibration_io.hpp"
 #include "evo/io/depth_map_reader.hpp"
 #include "evo/io/file_kind.hpp"

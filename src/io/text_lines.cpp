@@ -78,12 +78,6 @@ std::optional<std::int64_t> ParseInteger(std::string_view text) {
   return value;
 }
 
-std::string FormatNumber(double value) {
-  char buffer[32];
-  const auto [end, failure] = std::to_chars(buffer, buffer + sizeof buffer, value);
-  return failure == std::errc() ? std::string(buffer, end) : "?";
-}
-
 std::string Quote(std::string_view text) {
   std::string quoted = "'";
   for (const char c : text.substr(0, kQuoted)) quoted += c == '\t' || (c >= ' ' && c < '\x7f') ? c : '?';

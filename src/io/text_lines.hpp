@@ -48,9 +48,6 @@ std::optional<double> ParseFinite(std::string_view text);
 /// Empty unless `text` is entirely an integer.
 std::optional<std::int64_t> ParseInteger(std::string_view text);
 
-/// The shortest text that reads back as the same double.
-std::string FormatNumber(double value);
-
 /// 'text' for messages: bytes that do not print are replaced and long text is cut.
 std::string Quote(std::string_view text);
 

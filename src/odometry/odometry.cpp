@@ -6,6 +6,13 @@
 #include <string>
 
 #include "evo/core/error.hpp"
+#include "evo/core/parallel.hpp"
+#include "evo/odometry/resampling.hpp"
+#include "odometry/bundle/final_refinement.hpp"
+#include "odometry/frontend/frame_builder.hpp"
+#include "odometry/frontend/frame_handler.hpp"
+#include "odometry/scale/ground_scale.hpp"
+#include "odometry/segment.hpp"
 
 namespace evo::odometry {
 
@@ -18,20 +25,18 @@ std::vector<Segment> CutSegments(const FrameHandler& handler) {
     const FrameRecord& record = handler.records()[i];
     if (record.segment < 0) continue;
     Segment& segment = segments[record.segment];
-    segment.frames.push_back(static_cast<int>(i));
-    segment.T_cam_world.push_back(handler.Pose(static_cast<int>(i)));
-    segment.inliers.push_back(record.inliers);
+    const int frame = static_cast<int>(i);
+    segment.poses.push_back({frame, handler.Pose(frame), record.inliers});
   }
   return segments;
 }
 
 /// How the refinement of a segment has moved its last frame that has had a pose before and after, in the world.
-geometry::SE3 MoveOfEnd(const std::vector<int>& old_frames, const std::vector<geometry::SE3>& old_poses,
-                        const Segment& segment) {
-  for (std::size_t old = old_frames.size(); old-- > 0;) {
-    const auto at = std::ranges::lower_bound(segment.frames, old_frames[old]);
-    if (at == segment.frames.end() || *at != old_frames[old]) continue;
-    return segment.T_cam_world[static_cast<std::size_t>(at - segment.frames.begin())].Inverse() * old_poses[old];
+geometry::SE3 MoveOfEnd(const std::vector<SegmentPose>& old_poses, const Segment& segment) {
+  for (std::size_t old = old_poses.size(); old-- > 0;) {
+    const auto at = std::ranges::lower_bound(segment.poses, old_poses[old].frame, {}, &SegmentPose::frame);
+    if (at == segment.poses.end() || at->frame != old_poses[old].frame) continue;
+    return at->T_cam_world.Inverse() * old_poses[old].T_cam_world;
   }
   return {};
 }
@@ -44,16 +49,16 @@ void RefineSegments(const FinalRefinementOptions& options, const std::vector<Fra
   const double count = static_cast<double>(segments->size());
   for (std::size_t i = 0; i < segments->size(); ++i) {
     Segment& segment = (*segments)[i];
-    for (geometry::SE3& pose : segment.T_cam_world) pose = pose * T_new_old.Inverse();
+    for (SegmentPose& pose : segment.poses) pose.T_cam_world = pose.T_cam_world * T_new_old.Inverse();
     for (Point& point : segment.points) point.position = T_new_old * point.position;
-    const std::vector<int> old_frames = segment.frames;
-    const std::vector<geometry::SE3> old_poses = segment.T_cam_world;
-    const int after = i + 1 < segments->size() ? (*segments)[i + 1].frames.front() : static_cast<int>(frames.size());
+    const std::vector<SegmentPose> old_poses = segment.poses;
+    const int after =
+        i + 1 < segments->size() ? (*segments)[i + 1].poses.front().frame : static_cast<int>(frames.size());
     RefineSegment(
         options, frames, before, after, [&](double share) { progress((static_cast<double>(i) + share) / count); }, pool,
         &segment);
-    T_new_old = MoveOfEnd(old_frames, old_poses, segment) * T_new_old;
-    before = segment.frames.back() + 1;
+    T_new_old = MoveOfEnd(old_poses, segment) * T_new_old;
+    before = segment.poses.back().frame + 1;
   }
 }
 
@@ -77,13 +82,6 @@ void ListLost(const std::vector<Frame>& frames, OdometryResult* result) {
 }
 
 }  // namespace
-
-void Register(Parameters& parameters, OdometryOptions& options) {
-  Register(parameters, options.resampling);
-  Register(parameters, options.frame_handler);
-  Register(parameters, options.final_refinement);
-  Register(parameters, options.ground);
-}
 
 OdometryResult RunOdometry(const events::Tracks& tracks, const geometry::Camera& camera, const OdometryOptions& options,
                            int threads, const OdometryProgress& progress) {
@@ -116,12 +114,13 @@ OdometryResult RunOdometry(const events::Tracks& tracks, const geometry::Camera&
   if (grounded) result.ground = ScaleByGround(options.ground, frames, &segments);
   const bool scale_is_free = !result.ground || !result.ground->metric;
   for (const Segment& segment : segments) {
-    const auto covariances = segment.Covariances(scale_is_free);
-    for (std::size_t i = 0; i < segment.frames.size(); ++i) {
-      result.trajectory.push_back({frames[segment.frames[i]].t, segment.T_cam_world[i].Inverse()});
-      result.inliers.push_back(segment.inliers[i]);
+    const auto covariances = segment.uncertainty.Covariances(scale_is_free);
+    for (std::size_t i = 0; i < segment.poses.size(); ++i) {
+      const SegmentPose& pose = segment.poses[i];
+      result.trajectory.push_back({frames[pose.frame].t, pose.T_cam_world.Inverse()});
+      result.inliers.push_back(pose.inliers);
       if (covariances.empty()) continue;
-      result.covariances.push_back({frames[segment.frames[i]].t, InWorld(segment.T_cam_world[i], covariances[i])});
+      result.covariances.push_back({frames[pose.frame].t, InWorld(pose.T_cam_world, covariances[i])});
     }
     result.points.insert(result.points.end(), segment.points.begin(), segment.points.end());
   }

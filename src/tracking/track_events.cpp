@@ -6,8 +6,8 @@
 
 #include "evo/core/error.hpp"
 #include "evo/core/format.hpp"
-#include "tracking/tracker.hpp"
 #include "tracking/smoothing/track_buffer.hpp"
+#include "tracking/tracker.hpp"
 
 namespace evo::tracking {
 

@@ -1,7 +1,13 @@
 #include "evo/core/parameters.hpp"
 
 #include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
 #include <string>
 
 #include "evo/core/error.hpp"
@@ -113,6 +119,78 @@ TEST_F(ParametersTest, TextOfItsOwnGrammar) {
   EXPECT_NE(Refusal("odometry: {list: x}").find("must be whole numbers"), std::string::npos);
   EXPECT_EQ(list, "3,4,5");
   EXPECT_NE(parameters.ToYaml().find("list: 3,4,5  # some numbers; whole numbers\n"), std::string::npos);
+}
+
+/// Catches the log for as long as it lives.
+class LogCapture {
+ public:
+  LogCapture() : before_(spdlog::default_logger()) {
+    spdlog::set_default_logger(
+        std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_st>(text_)));
+    spdlog::default_logger()->set_pattern("%l: %v");
+  }
+  ~LogCapture() { spdlog::set_default_logger(before_); }
+  LogCapture(const LogCapture&) = delete;
+  LogCapture& operator=(const LogCapture&) = delete;
+
+  std::string text() const { return text_.str(); }
+
+ private:
+  std::shared_ptr<spdlog::logger> before_;
+  std::ostringstream text_;
+};
+
+TEST_F(ParametersTest, AliasAssignsTheParameterAndWarns) {
+  parameters.Alias("tracker.most_features", "tracker.features");
+  const LogCapture log;
+  parameters.LoadText("tracker:\n  sigma_px: 1\n  most_features: 50\n", "run.yaml");
+  EXPECT_EQ(features, 50);
+  EXPECT_EQ(log.text(), "warning: run.yaml:3: parameter 'tracker.most_features' is now called 'tracker.features'\n");
+  parameters.Set("tracker.most_features=60");
+  EXPECT_EQ(features, 60);
+  EXPECT_NE(log.text().find("--set tracker.most_features=60: parameter"), std::string::npos) << log.text();
+  parameters.Set("tracker.features=70");
+  EXPECT_EQ(std::ranges::count(log.text(), '\n'), 2) << log.text();
+}
+
+TEST_F(ParametersTest, AliasAndNameInOneFileAreGivenTwice) {
+  parameters.Alias("tracker.most_features", "tracker.features");
+  const LogCapture log;
+  for (const char* yaml : {"tracker: {features: 50, most_features: 50}", "tracker: {most_features: 50, features: 50}",
+                           "tracker: {features: 50, features: 50}"}) {
+    EXPECT_NE(Refusal(yaml).find("'tracker.features' comes twice"), std::string::npos) << yaml;
+  }
+}
+
+TEST_F(ParametersTest, AliasStaysOutOfSuggestionsAndOfTheYaml) {
+  parameters.Alias("tracker.most_features", "tracker.features");
+  EXPECT_EQ(Refusal("tracker: {most_feature: 5}").find("most_features'"), std::string::npos);
+  EXPECT_EQ(parameters.ToYaml().find("most_features"), std::string::npos);
+  const LogCapture log;
+  EXPECT_NE(Refusal("tracker: {most_features: 5}").find("'tracker.features' is '5'"), std::string::npos);
+}
+
+TEST_F(ParametersTest, AliasOfNothingIsAMistakeOfTheProgram) {
+  EXPECT_THROW(parameters.Alias("tracker.most", "tracker.feature"), std::logic_error);
+}
+
+TEST_F(ParametersTest, MarkdownHasATablePerGroup) {
+  std::string text;
+  Parameters mixed;
+  mixed.Add("b.sigma_px", &sigma, 0.1, 10.0, "smoothing (px)");
+  mixed.Add("b.c.refine", &refine, "a|b (rise over run)");
+  mixed.Add("b.weight", &weight, {"tukey", "huber"}, "robust weight");
+  mixed.Add(
+      "a.file", &text, [](const std::string&) { return true; }, "path", "trajectory");
+  mixed.Alias("b.width_px", "b.sigma_px");
+  EXPECT_EQ(mixed.ToMarkdown(),
+            "### a\n\n| Name | Default | Unit | Values | Meaning |\n|---|---|---|---|---|\n"
+            "| `a.file` | `\"\"` |  | path | trajectory |\n"
+            "\n### b\n\n| Name | Default | Unit | Values | Meaning |\n|---|---|---|---|---|\n"
+            "| `b.sigma_px` | `2` | px | 0.1 to 10 | smoothing; formerly `b.width_px` |\n"
+            "| `b.weight` | `tukey` |  | tukey, huber | robust weight |\n"
+            "\n### b.c\n\n| Name | Default | Unit | Values | Meaning |\n|---|---|---|---|---|\n"
+            "| `b.c.refine` | `true` |  | true, false | a\\|b (rise over run) |\n");
 }
 
 TEST_F(ParametersTest, EmptyFileChangesNothing) {

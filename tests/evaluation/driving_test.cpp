@@ -87,7 +87,8 @@ TEST(DrivingFrame, StandingStillFallsBackOnTheViewDirection) {
 }
 
 TEST(DrivingFrame, LooksDownAndStandsStill) {
-  geometry::Trajectory truth{{0, geometry::SE3(geometry::so3::Exp({-std::numbers::pi / 2, 0, 0}), Eigen::Vector3d::Zero())}};
+  geometry::Trajectory truth{
+      {0, geometry::SE3(geometry::so3::Exp({-std::numbers::pi / 2, 0, 0}), Eigen::Vector3d::Zero())}};
   const Eigen::Vector3d up = truth[0].T_world_cam.rotation() * -Eigen::Vector3d::UnitZ();
   DrivingFrame frame(truth, up, "travel", 1.0);
   const auto error = frame.Split(0, truth[0].T_world_cam, {0.3, 0.2, 0.4});
@@ -97,7 +98,8 @@ TEST(DrivingFrame, LooksDownAndStandsStill) {
 
 TEST(DrivingFrame, BodyIsTheCamerasOwnFrame) {
   geometry::Trajectory truth = StraightAhead(5, 0.5);
-  const geometry::SE3 pose(geometry::so3::Exp({0.0, 0.5 * std::numbers::pi, 0.0}), {0, 0, 1.0});  // looks along x, right is -z
+  const geometry::SE3 pose(geometry::so3::Exp({0.0, 0.5 * std::numbers::pi, 0.0}),
+                           {0, 0, 1.0});  // looks along x, right is -z
   DrivingFrame frame(truth, -Eigen::Vector3d::UnitY(), "body", 1.0);
   const auto error = frame.Split(truth[2].t, pose, Eigen::Vector3d(0.3, -0.2, 1.4));
   EXPECT_NEAR(error.longitudinal, 0.3, 1e-12);

@@ -21,8 +21,9 @@ geometry::Trajectory Curve(int poses, double noise) {
     const Eigen::Vector3d shift(normal(random), normal(random), normal(random));
     const Eigen::Vector3d turn(normal(random), normal(random), normal(random));
     trajectory.push_back(
-        {FromSeconds(s), geometry::SE3(geometry::so3::Exp({0.1 * s, 0.3 * std::sin(s), -0.2 * s}) * geometry::so3::Exp(0.1 * turn),
-                                       Eigen::Vector3d(3.0 * s, std::sin(0.7 * s), 0.2 * s * s) + shift)});
+        {FromSeconds(s),
+         geometry::SE3(geometry::so3::Exp({0.1 * s, 0.3 * std::sin(s), -0.2 * s}) * geometry::so3::Exp(0.1 * turn),
+                       Eigen::Vector3d(3.0 * s, std::sin(0.7 * s), 0.2 * s * s) + shift)});
   }
   return trajectory;
 }

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "evo/io/open_events.hpp"
 #include "evo/io/mvsec_writer.hpp"
+#include "evo/io/open_events.hpp"
 #include "io/hdf5_support.hpp"
 #include "io/support.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "evo/io/open_events.hpp"
 #include "evo/io/calibration_io.hpp"
+#include "evo/io/open_events.hpp"
 #include "evo/io/sequence.hpp"
 #include "evo/io/track_io.hpp"
 #include "evo/io/trajectory_io.hpp"

@@ -1,4 +1,4 @@
-#include "evo/odometry/bootstrap.hpp"
+#include "odometry/frontend/bootstrap.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "evo/odometry/bundle_adjuster.hpp"
+#include "odometry/bundle/bundle_adjuster.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include <random>
 #include <utility>
 
-#include "evo/odometry/pose_uncertainty.hpp"
 #include "odometry/bundle/block_skyline.hpp"
 #include "odometry/bundle/track_weights.hpp"
 #include "odometry/bundle_drive.hpp"
+#include "odometry/uncertainty/pose_uncertainty.hpp"
 
 namespace evo::odometry {
 namespace {

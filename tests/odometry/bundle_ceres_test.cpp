@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "evo/odometry/bundle_adjuster.hpp"
+#include "odometry/bundle/bundle_adjuster.hpp"
 #include "odometry/track_covariance.hpp"
 
 namespace evo::odometry {
@@ -35,9 +35,10 @@ BundleProblem DisturbedDrive(std::uint32_t seed) {
       const Eigen::Vector3d q = problem.T_cam_world[i] * WorldPosition(problem, problem.points.back());
       Eigen::Vector2d error_px(0.4 * normal(random), 0.4 * normal(random));
       if (share(random) < 0.08) error_px += Eigen::Vector2d(far(random), far(random));
-      Eigen::Matrix2d px_per_unit;
-      px_per_unit << 230.0 + 10.0 * normal(random), 5.0 * normal(random), 5.0 * normal(random), 210.0;
-      problem.observations.push_back({i, p, q.head<2>() / q.z() + px_per_unit.inverse() * error_px, px_per_unit});
+      Eigen::Matrix2d J_pixel_normalized;
+      J_pixel_normalized << 230.0 + 10.0 * normal(random), 5.0 * normal(random), 5.0 * normal(random), 210.0;
+      problem.observations.push_back(
+          {i, p, q.head<2>() / q.z() + J_pixel_normalized.inverse() * error_px, J_pixel_normalized});
     }
   }
   for (int i = 2; i < kFrames; ++i) {
@@ -73,7 +74,7 @@ struct Innovation {
       ceres::AngleAxisRotatePoint(camera, world, turned);
       const T z = turned[2] + camera[5];
       const Eigen::Matrix<T, 2, 1> projection((turned[0] + camera[3]) / z, (turned[1] + camera[4]) / z);
-      sum += weights[k] * (observation.px_per_unit * (observation.x - projection));
+      sum += weights[k] * (observation.J_pixel_normalized * (observation.x - projection));
     }
     return true;
   }

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <random>
 
-#include "evo/odometry/bundle_adjuster.hpp"
+#include "odometry/bundle/bundle_adjuster.hpp"
 
 namespace evo::odometry::testing {
 
@@ -15,9 +15,10 @@ inline BundleProblem DriveBundle(int frames, int points, double noise_px, std::u
   std::normal_distribution<double> normal(0.0, noise_px);
   BundleProblem problem;
   for (int i = 0; i < frames; ++i) {
-    problem.T_cam_world.emplace_back(geometry::so3::Exp({0.001 * i, -0.01 * i, 0}), Eigen::Vector3d(0.02 * i, 0, -0.4 * i));
+    problem.T_cam_world.emplace_back(geometry::so3::Exp({0.001 * i, -0.01 * i, 0}),
+                                     Eigen::Vector3d(0.02 * i, 0, -0.4 * i));
   }
-  const Eigen::Matrix2d px_per_unit = 226.0 * Eigen::Matrix2d::Identity();
+  const Eigen::Matrix2d J_pixel_normalized = 226.0 * Eigen::Matrix2d::Identity();
   for (int p = 0; p < points; ++p) {
     const int first = p % (frames - 4);
     const double z = depth(random);
@@ -28,7 +29,7 @@ inline BundleProblem DriveBundle(int frames, int points, double noise_px, std::u
       const Eigen::Vector3d q = problem.T_cam_world[i] * WorldPosition(problem, point);
       if (q.z() < 1.0) break;
       const Eigen::Vector2d noise(normal(random), normal(random));
-      problem.observations.push_back({i, id, q.head<2>() / q.z() + noise / 226.0, px_per_unit});
+      problem.observations.push_back({i, id, q.head<2>() / q.z() + noise / 226.0, J_pixel_normalized});
     }
   }
   return problem;

@@ -1,4 +1,4 @@
-#include "evo/odometry/depth_filter.hpp"
+#include "odometry/mapping/depth_filter.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "evo/odometry/ground_scale.hpp"
+#include "odometry/scale/ground_scale.hpp"
 
 #include <gtest/gtest.h>
 
@@ -82,7 +82,8 @@ class StreetMaker {
     const double x = options_.bend / 0.0016 * (1.0 - std::cos(0.04 * z));
     const double heading = std::atan(options_.bend / 0.04 * std::sin(0.04 * z));
     const Eigen::Quaterniond car = geometry::so3::Exp({0, heading, 0}) * geometry::so3::Exp({-std::atan(slope), 0, 0});
-    const Eigen::Quaterniond camera = geometry::so3::Exp({-options_.pitch, 0, 0}) * geometry::so3::Exp({0, 0, options_.roll});
+    const Eigen::Quaterniond camera =
+        geometry::so3::Exp({-options_.pitch, 0, 0}) * geometry::so3::Exp({0, 0, options_.roll});
     return {car * camera, Eigen::Vector3d(x, RoadHeight(z), z) + car * Eigen::Vector3d(0, -CameraHeight(z), 0)};
   }
 

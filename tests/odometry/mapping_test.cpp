@@ -6,10 +6,10 @@
 #include <random>
 
 #include "evo/core/error.hpp"
-#include "evo/odometry/bootstrap.hpp"
 #include "evo/odometry/map_writer.hpp"
-#include "evo/odometry/mapping_thread.hpp"
-#include "evo/odometry/resampling.hpp"
+#include "odometry/frontend/bootstrap.hpp"
+#include "odometry/frontend/frame_builder.hpp"
+#include "odometry/mapping/mapping_thread.hpp"
 #include "odometry/mapping/segment_alignment.hpp"
 #include "odometry/synthetic_drive.hpp"
 

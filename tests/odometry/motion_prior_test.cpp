@@ -1,4 +1,4 @@
-#include "evo/odometry/motion_prior.hpp"
+#include "odometry/bundle/motion_prior.hpp"
 
 #include <gtest/gtest.h>
 

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "evo/core/error.hpp"
+#include "evo/core/parameters.hpp"
 #include "odometry/synthetic_drive.hpp"
 
 namespace evo::odometry {

@@ -1,4 +1,4 @@
-#include "evo/odometry/pose_optimizer.hpp"
+#include "odometry/frontend/pose_optimizer.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,10 +18,11 @@ std::vector<PoseObservation> Scene(int count, double noise_px, std::uint32_t see
   for (int i = 0; i < count; ++i) {
     const double z = depth(random);
     const Eigen::Vector3d p(side(random) * z, side(random) * z, z);
-    Eigen::Matrix2d px_per_unit;
-    px_per_unit << 220.0, 5.0, 5.0, 210.0;
+    Eigen::Matrix2d J_pixel_normalized;
+    J_pixel_normalized << 220.0, 5.0, 5.0, 210.0;
     const Eigen::Vector2d noise(normal(random), normal(random));
-    observations.push_back({Truth().Inverse() * p, p.head<2>() / p.z() + px_per_unit.inverse() * noise, px_per_unit});
+    observations.push_back(
+        {Truth().Inverse() * p, p.head<2>() / p.z() + J_pixel_normalized.inverse() * noise, J_pixel_normalized});
   }
   return observations;
 }

@@ -1,4 +1,4 @@
-#include "evo/odometry/pose_uncertainty.hpp"
+#include "odometry/uncertainty/pose_uncertainty.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ namespace {
 using testing::DriveBundle;
 using testing::LetTracksDrift;
 
-constexpr CommonErrors kIndependent{.alike = 1.0, .turn = 0.0};
+constexpr CovarianceOptions kIndependent{.variance_inflation = 1.0, .rotation_bias_ratio = 0.0};
 
 /// Mean squared error of the poses over what their covariances say, for one degree of freedom: 1 if they are honest.
 double NormalizedError(double noise_px, double drift_px, double expected_drift, std::uint32_t seed) {
@@ -104,14 +104,14 @@ TEST(PoseUncertainty, TracksThatErrAlikeTellLess) {
   auto problem = DriveBundle(40, 500, 0.3, 1);
   problem.fixed_frames = 2;
   AdjustBundle({}, &problem);
-  EXPECT_NEAR(PoseUncertainty({.alike = 4.0, .turn = 0.0}, {}, problem).Turn(0, 39),
+  EXPECT_NEAR(PoseUncertainty({.variance_inflation = 4.0, .rotation_bias_ratio = 0.0}, {}, problem).Turn(0, 39),
               2.0 * PoseUncertainty(kIndependent, {}, problem).Turn(0, 39), 1e-9);
 }
 
 TEST(PoseUncertainty, WhatTurnsTheWholeImageTurnsThePath) {
   // Nearly without noise, and every track turned by a share of the images' motion since it was born.
   constexpr double kShare = 0.02;
-  const CommonErrors common{.alike = 1.0, .turn = kShare};
+  const CovarianceOptions common{.variance_inflation = 1.0, .rotation_bias_ratio = kShare};
   const auto truth = DriveBundle(40, 2000, 0.0, 4);
   auto problem = DriveBundle(40, 2000, 1e-4, 4);
   problem.fixed_frames = 2;

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "evo/core/error.hpp"
+#include "odometry/frontend/frame_builder.hpp"
 #include "odometry/synthetic_drive.hpp"
 
 namespace evo::odometry {
@@ -102,7 +103,7 @@ TEST(Resampling, FramesHoldUndistortedFeaturesWithTheLensJacobian) {
   EXPECT_LT((camera.Distort(feature->x) - Eigen::Vector2d(300.0, 40.0)).norm(), 1e-6);
   const Eigen::Vector2d d(1e-3, -2e-3);
   const Eigen::Vector2d moved = camera.Distort(feature->x + d) - camera.Distort(feature->x);
-  EXPECT_LT((feature->px_per_unit * d - moved).norm(), 5e-3);
+  EXPECT_LT((feature->J_pixel_normalized * d - moved).norm(), 5e-3);
 }
 
 TEST(Resampling, RefusesTracksOffTheSensor) {

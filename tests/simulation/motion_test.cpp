@@ -198,7 +198,9 @@ TEST(VehicleMotion, VibrationHasItsSizeAndIsSmallAtRest) {
   const auto deviation = [&](double from, double to) {
     double sum = 0.0;
     for (int i = 0; i < 10000; ++i) {
-      sum += geometry::so3::Log(motion.T_world_cam(FromSeconds(from + (to - from) * i / 10000)).rotation()).squaredNorm() / 3e4;
+      sum +=
+          geometry::so3::Log(motion.T_world_cam(FromSeconds(from + (to - from) * i / 10000)).rotation()).squaredNorm() /
+          3e4;
     }
     return std::sqrt(sum) * 180.0 / kPi;
   };

@@ -48,7 +48,9 @@ struct ShakyTracks {
         constexpr int kSteps = 40;
         for (int k = 0; k < kSteps; ++k) {
           const double share = (k + 0.5) * 2.0 / kSteps - 1.0;
-          const auto seen = [&](double reach) { return camera.Project(geometry::so3::Exp(Turn(t + reach * share)) * rays[i]); };
+          const auto seen = [&](double reach) {
+            return camera.Project(geometry::so3::Exp(Turn(t + reach * share)) * rays[i]);
+          };
           mean += seen(std::hypot(half, kSmearS)) / kSteps;
           slope += 3.0 * share / half * seen(half) / kSteps;
         }

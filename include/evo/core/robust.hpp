@@ -2,7 +2,8 @@
 
 namespace evo {
 
-// Weights of iteratively reweighted least squares (P. J. Huber: Robust Statistics, 1981). Errors and widths share a unit.
+// Weights of iteratively reweighted least squares (P. J. Huber: Robust Statistics, 1981). Errors and widths share a
+// unit.
 
 /// At these widths, in standard deviations, each loss keeps 95 % of least squares' efficiency under Gaussian noise.
 inline constexpr double kHuberWidth = 1.345;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "evo/core/error.hpp"
+#include "evo/core/number.hpp"
 #include "evo/core/output_file.hpp"
 #include "evo/io/file_kind.hpp"
 #include "io/text_lines.hpp"

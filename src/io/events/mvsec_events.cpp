@@ -1,4 +1,5 @@
 #include "io/events/mvsec_events.hpp"
+#include "evo/core/number.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,5 @@
 #include "evo/io/open_events.hpp"
+#include "evo/core/number.hpp"
 #include "evo/events/event_reader.hpp"
 
 #include <limits>

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "evo/core/error.hpp"
+#include "evo/core/number.hpp"
 #include "evo/io/file_kind.hpp"
 #include "io/hdf5/hdf5.hpp"
 #include "io/text_lines.hpp"

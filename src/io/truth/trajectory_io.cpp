@@ -10,6 +10,7 @@
 
 #include "evo/core/error.hpp"
 #include "evo/core/format.hpp"
+#include "evo/core/number.hpp"
 #include "evo/core/output_file.hpp"
 #include "evo/io/file_kind.hpp"
 #include "io/hdf5/hdf5.hpp"

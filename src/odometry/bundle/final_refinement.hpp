@@ -5,7 +5,7 @@
 
 #include "evo/core/parallel.hpp"
 #include "evo/odometry/odometry_options.hpp"
-#include "odometry/bundle/segment.hpp"
+#include "odometry/segment.hpp"
 #include "odometry/frontend/frame.hpp"
 
 namespace evo::odometry {

@@ -5,7 +5,7 @@
 
 #include "evo/geometry/se3.hpp"
 #include "odometry/bundle/refined_points.hpp"
-#include "odometry/bundle/segment.hpp"
+#include "odometry/segment.hpp"
 #include "odometry/frontend/frame.hpp"
 
 namespace evo::odometry {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "evo/odometry/point.hpp"
-#include "odometry/bundle/segment.hpp"
+#include "odometry/segment.hpp"
 #include "odometry/bundle/segment_bundle.hpp"
 #include "odometry/frontend/frame.hpp"
 #include "odometry/frontend/pose_optimizer.hpp"

@@ -6,7 +6,7 @@
 
 #include "evo/odometry/odometry_options.hpp"
 #include "odometry/bundle/bundle_problem.hpp"
-#include "odometry/bundle/segment.hpp"
+#include "odometry/segment.hpp"
 #include "odometry/frontend/frame.hpp"
 
 namespace evo::odometry {

@@ -1,4 +1,4 @@
-#include "evo/odometry/bootstrap.hpp"
+#include "odometry/frontend/bootstrap.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,9 @@
 #include "evo/core/median.hpp"
 #include "evo/geometry/triangulation.hpp"
 #include "evo/geometry/two_view.hpp"
-#include "evo/odometry/bundle_adjuster.hpp"
-#include "evo/odometry/pose_optimizer.hpp"
+#include "odometry/bundle/bundle_adjuster.hpp"
+#include "odometry/bundle/reprojection.hpp"
+#include "odometry/frontend/pose_optimizer.hpp"
 
 namespace evo::odometry {
 
@@ -34,25 +35,6 @@ double Parallax(const Feature& first, const Feature& second, const geometry::SE3
 }
 
 }  // namespace
-
-void Register(Parameters& parameters, BootstrapOptions& options) {
-  parameters.Add("odometry.bootstrap.min_disparity_px", &options.min_disparity_px, 1, 200,
-                 "median image motion in px from which two frames are tried");
-  parameters.Add("odometry.bootstrap.max_disparity_px", &options.max_disparity_px, 2, 500,
-                 "median image motion in px beyond which the older frame is given up");
-  parameters.Add("odometry.bootstrap.inlier_px", &options.inlier_px, 0.1, 20, "epipolar error of an inlier in px");
-  parameters.Add("odometry.bootstrap.min_inlier_ratio", &options.min_inlier_ratio, 0, 1,
-                 "share of the common tracks that must be inliers");
-  parameters.Add("odometry.bootstrap.min_inliers", &options.min_inliers, 8, 1000, "inliers that a first map needs");
-  parameters.Add("odometry.bootstrap.min_shared_ratio", &options.min_shared_ratio, 0, 1,
-                 "share of the second frame's tracks that the first must have seen");
-  parameters.Add("odometry.bootstrap.min_parallax_deg", &options.min_parallax_deg, 0.05, 30,
-                 "median parallax of the first map's points in degrees");
-  parameters.Add("odometry.bootstrap.median_depth", &options.median_depth, 1e-3, 1e4,
-                 "median depth given to the first map: sets the unit of length");
-  parameters.Add("odometry.bootstrap.refine", &options.refine,
-                 "bundle-adjust the first map with frames between its two");
-}
 
 Bootstrapper::Bootstrapper(const BootstrapOptions& options, const std::vector<Frame>& frames, double focal_px)
     : options_(options), frames_(frames), focal_px_(focal_px) {
@@ -173,7 +155,7 @@ bool Bootstrapper::TrackBetween(Bootstrap* bootstrap) const {
     const Frame& frame = frames_[static_cast<std::size_t>(bootstrap->first) + i];
     for (const Point& point : bootstrap->points) {
       const Feature* const feature = frame.Find(point.track);
-      if (feature) observations.push_back({point.position, feature->x, feature->px_per_unit});
+      if (feature) observations.push_back({point.position, feature->x, feature->J_pixel_normalized});
     }
     const auto estimate = optimizer.Optimize(observations, bootstrap->T_cam_world[i - 1]);
     if (!optimizer.Accepts(estimate)) return false;
@@ -197,11 +179,11 @@ bool Bootstrapper::Refine(Bootstrap* bootstrap) const {
     problem.points.push_back({0, Eigen::Vector3d(position.x(), position.y(), 1.0) / position.z()});
     for (int k = 0; k < used; ++k) {
       const Feature* const feature = frames_[bootstrap->first + chosen[k]].Find(bootstrap->points[p].track);
-      if (feature) problem.observations.push_back({k, static_cast<int>(p), feature->x, feature->px_per_unit});
+      if (feature) problem.observations.push_back({k, static_cast<int>(p), feature->x, feature->J_pixel_normalized});
     }
   }
   AdjustBundle({}, &problem);
-  const auto errors = BundleErrors(problem);
+  const auto errors = ReprojectionErrors(problem);
   const auto good = std::ranges::count_if(errors, [](const auto& error) { return error.norm() < kGoodPx; });
   if (static_cast<double>(good) < kGoodShare * static_cast<double>(errors.size())) return false;
   std::vector<double> depths;

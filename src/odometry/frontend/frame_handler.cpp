@@ -1,4 +1,4 @@
-#include "evo/odometry/frame_handler.hpp"
+#include "odometry/frontend/frame_handler.hpp"
 
 #include <spdlog/spdlog.h>
 
@@ -17,26 +17,6 @@ constexpr double kPredictionSeconds = 0.5;  // a velocity older than this says n
 constexpr int kHighIndex = std::numeric_limits<int>::max();
 
 }  // namespace
-
-void Register(Parameters& parameters, FrameHandlerOptions& options) {
-  parameters.Add("odometry.lag", &options.lag, 1, 100, "frames after which a frame's depths enter the map");
-  auto& key = options.key_frame;
-  parameters.Add("odometry.key_frame.translation", &key.translation, 0.001, 10,
-                 "translation since the last key frame over median depth");
-  parameters.Add("odometry.key_frame.rotation_deg", &key.rotation_deg, 0.1, 180,
-                 "rotation since the last key frame in degrees");
-  parameters.Add("odometry.key_frame.disparity_px", &key.disparity_px, 1, 1000,
-                 "median image motion since the last key frame in px");
-  parameters.Add("odometry.key_frame.min_shared_ratio", &key.min_shared_ratio, 0, 1,
-                 "share of the tracks that the last key frame must have seen");
-  parameters.Add("odometry.key_frame.min_disparity_px", &key.min_disparity_px, 0, 100,
-                 "no key frame with less image motion in px than this");
-  parameters.Add("odometry.key_frame.every_frames", &key.every_frames, 0, 1000,
-                 "instead of these rules a key frame every so many frames; 0: by the rules");
-  Register(parameters, options.bootstrap);
-  Register(parameters, options.pose);
-  Register(parameters, options.mapper);
-}
 
 FrameHandler::FrameHandler(const FrameHandlerOptions& options, const std::vector<Frame>& frames, double focal_px,
                            int threads)
@@ -98,7 +78,7 @@ FrameHandler::Sighted FrameHandler::Sight(const Frame& frame) const {
     const auto found = landmarks_.find(feature.track);
     if (found == landmarks_.end()) continue;
     sighted.tracks.push_back(feature.track);
-    sighted.observations.push_back({found->second, feature.x, feature.px_per_unit});
+    sighted.observations.push_back({found->second, feature.x, feature.J_pixel_normalized});
   }
   return sighted;
 }

@@ -1,4 +1,4 @@
-#include "evo/odometry/pose_optimizer.hpp"
+#include "odometry/frontend/pose_optimizer.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -42,19 +42,10 @@ std::vector<double> ResidualNorms(std::span<const PoseObservation> observations,
 
 }  // namespace
 
-void Register(Parameters& parameters, PoseOptions& options) {
-  parameters.Add("odometry.pose.iterations", &options.iterations, 1, 100, "Gauss-Newton iterations a frame");
-  parameters.Add("odometry.pose.inlier_px", &options.inlier_px, 0.1, 20,
-                 "residual in px below which a point is always an inlier");
-  parameters.Add("odometry.pose.min_inliers", &options.min_inliers, 4, 1000, "fewer inliers than this: lost");
-  parameters.Add("odometry.pose.min_inlier_ratio", &options.min_inlier_ratio, 0, 1,
-                 "smaller share of inliers than this: lost");
-}
-
 Eigen::Vector2d ReprojectionError(const geometry::SE3& T_cam_world, const PoseObservation& observation) {
   const Eigen::Vector3d p = T_cam_world * observation.point_world;
   if (!(p.z() > 0.0)) return Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
-  return observation.px_per_unit * (observation.x - p.head<2>() / p.z());
+  return observation.J_pixel_normalized * (observation.x - p.head<2>() / p.z());
 }
 
 Eigen::Matrix<double, 2, 6> ReprojectionJacobian(const geometry::SE3& T_cam_world, const PoseObservation& observation) {
@@ -66,7 +57,7 @@ Eigen::Matrix<double, 2, 6> ReprojectionJacobian(const geometry::SE3& T_cam_worl
   Eigen::Matrix<double, 2, 6> jacobian;
   jacobian << -inverse_z, 0, u * inverse_z, u * v, -1.0 - u * u, v, 0, -inverse_z, v * inverse_z, 1.0 + v * v, -u * v,
       -u;
-  return observation.px_per_unit * jacobian;
+  return observation.J_pixel_normalized * jacobian;
 }
 
 PoseEstimate PoseOptimizer::Optimize(std::span<const PoseObservation> observations, const geometry::SE3& start) const {

@@ -1,4 +1,4 @@
-#include "evo/odometry/depth_filter.hpp"
+#include "odometry/mapping/depth_filter.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,23 +25,10 @@ double EpipolarDistance(const Seed& seed, const Feature& feature, const geometry
   if (!(length > 1e-12)) return 0.0;  // at the epipole every direction fits
   const Eigen::Vector2d across = line.head<2>() / length;
   const double distance = feature.x.homogeneous().dot(line) / length;
-  return (feature.px_per_unit * (distance * across)).norm();
+  return (feature.J_pixel_normalized * (distance * across)).norm();
 }
 
 }  // namespace
-
-void Register(Parameters& parameters, DepthFilterOptions& options) {
-  parameters.Add("odometry.depth_filter.pixel_noise", &options.pixel_noise, 0.05, 10,
-                 "noise of a sighting in px, one sigma");
-  parameters.Add("odometry.depth_filter.convergence", &options.convergence, 5, 10000,
-                 "a seed has converged when sigma < range / this");
-  parameters.Add("odometry.depth_filter.epipolar_px", &options.epipolar_px, 0.1, 50,
-                 "a sighting farther from its epipolar line is a failed match");
-  parameters.Add("odometry.depth_filter.min_inlier_ratio", &options.min_inlier_ratio, 0, 1,
-                 "a seed with a smaller share of good measurements is dropped");
-  parameters.Add("odometry.depth_filter.max_age", &options.max_age, 1, 1000,
-                 "key frames after which a seed that has not converged is dropped");
-}
 
 void UpdateSeed(double x, double tau, Seed* seed) {
   const double tau2 = tau * tau;

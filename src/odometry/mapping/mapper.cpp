@@ -1,9 +1,9 @@
-#include "evo/odometry/mapper.hpp"
+#include "odometry/mapping/mapper.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "evo/odometry/bundle_adjuster.hpp"
+#include "odometry/bundle/bundle_adjuster.hpp"
 
 namespace evo::odometry {
 
@@ -14,21 +14,6 @@ constexpr int kFixedKeyFrames = 2;     // of the window: they hold its place and
 constexpr double kOutlierShare = 0.4;  // of a point's history, to be dropped
 
 }  // namespace
-
-void Register(Parameters& parameters, MapperOptions& options) {
-  parameters.Add("odometry.window_refinement", &options.window_refinement,
-                 "bundle-adjust the last key frames at every key frame");
-  parameters.Add("odometry.window", &options.window, 3, 100, "key frames in that window");
-  parameters.Add("odometry.window_iterations", &options.window_iterations, 1, 100, "iterations of that refinement");
-  parameters.Add("odometry.loss_px", &options.loss_px, 0.05, 20, "width of the robust loss in px");
-  parameters.Add("odometry.depth_filter.update_px", &options.update_px, 0, 20,
-                 "image motion in px between two updates of the depth filter");
-  parameters.Add("odometry.depth_filter.old_key_frames", &options.old_key_frames, 0, 100,
-                 "earlier key frames that a new seed is measured with");
-  parameters.Add("odometry.max_outliers", &options.max_outliers, 1, 1000,
-                 "frames that must contradict a point before it may be dropped");
-  Register(parameters, options.depth_filter);
-}
 
 Mapper::Mapper(const MapperOptions& options, double px_angle)
     : options_(options), filter_(options.depth_filter, px_angle, [this](const Seed& s) { converged_.push_back(s); }) {}
@@ -159,10 +144,10 @@ void Mapper::RefineWindow(MapUpdate* update) {
     problem.points.push_back({anchor, Eigen::Vector3d(p.x(), p.y(), 1.0) / p.z()});
     tracks.push_back(track);
     for (const auto& [frame, feature] : seen) {
-      problem.observations.push_back({frame, id, feature->x, feature->px_per_unit});
+      problem.observations.push_back({frame, id, feature->x, feature->J_pixel_normalized});
     }
   }
-  AdjustBundle({.iterations = options_.window_iterations, .loss_px = options_.loss_px}, &problem);
+  AdjustBundle({.max_iterations = options_.window_iterations, .cauchy_width_px = options_.loss_px}, &problem);
   for (int i = begin; i < end; ++i) map_.key_frames[i].T_cam_world = problem.T_cam_world[i - begin];
   for (std::size_t p = 0; p < tracks.size(); ++p) {
     if (!(problem.points[p].inverse_depth.z() > 0.0)) continue;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "evo/geometry/se3.hpp"
-#include "evo/odometry/bootstrap.hpp"
+#include "odometry/frontend/bootstrap.hpp"
 
 namespace evo::odometry {
 

@@ -1,24 +1,13 @@
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
 #include "evo/odometry/odometry_options.hpp"
-#include "odometry/bundle/segment.hpp"
+#include "evo/odometry/odometry_result.hpp"
+#include "odometry/segment.hpp"
 #include "odometry/frontend/frame.hpp"
 
 namespace evo::odometry {
-
-/// The scale by the ground.
-struct GroundScale {
-  bool found = false;           ///< else the scale is as arbitrary as before
-  bool metric = false;          ///< the camera's height was given
-  std::size_t tracks = 0;       ///< on the ground
-  double covered_ratio = 0.0;   ///< part of the path where the scale is known within a percent
-  double relative_sigma = 0.0;  ///< standard deviation of the scale, median along the path
-  double min_scale = 0.0;       ///< m (or new units) to a unit of the map, along the path
-  double max_scale = 0.0;       ///< the same
-};
 
 /// Removes the slow drift of the scale along the path, and its jump where the tracking was lost, by the height of the
 /// camera above the ground that it drives over, which is constant; makes the run's unit the metre if the height is

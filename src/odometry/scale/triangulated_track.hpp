@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "odometry/bundle/segment.hpp"
+#include "odometry/segment.hpp"
 #include "odometry/frontend/frame.hpp"
 
 namespace evo::odometry {

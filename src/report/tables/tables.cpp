@@ -261,8 +261,8 @@ std::string FormatSummary(const evaluation::Evaluation& evaluation) {
 
 std::string FormatLifetimes(const evaluation::LifetimeStatistics& statistics, const std::string& note) {
   return evo::Format("lifetime   %.1f +- %.1f frames, %.2f +- %.2f s (%lld tracks", statistics.in_frames.mean,
-                statistics.in_frames.standard_deviation, statistics.in_seconds.mean,
-                statistics.in_seconds.standard_deviation, static_cast<long long>(statistics.tracks)) +
+                     statistics.in_frames.standard_deviation, statistics.in_seconds.mean,
+                     statistics.in_seconds.standard_deviation, static_cast<long long>(statistics.tracks)) +
          note + ")\n";
 }
 

@@ -103,7 +103,8 @@ class Vehicle {
 
   geometry::SE3 Pose(double t) const {
     const RoadLine::Point point = road_.At(Distance(t));
-    const Eigen::Quaterniond on_road = geometry::so3::Exp({0.0, point.heading, 0.0}) * geometry::so3::Exp({point.pitch, 0.0, 0.0});
+    const Eigen::Quaterniond on_road =
+        geometry::so3::Exp({0.0, point.heading, 0.0}) * geometry::so3::Exp({point.pitch, 0.0, 0.0});
     Eigen::Vector3d turn = Vibration(t);
     double heave = 0.0;
     auto bump = std::ranges::lower_bound(bumps_, t - kBumpEnd, {}, &Bump::time);

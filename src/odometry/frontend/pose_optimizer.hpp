@@ -4,24 +4,16 @@
 #include <span>
 #include <vector>
 
-#include "evo/core/parameters.hpp"
 #include "evo/geometry/se3.hpp"
+#include "evo/odometry/odometry_options.hpp"
 
 namespace evo::odometry {
-
-struct PoseOptions {
-  int iterations = 10;
-  double inlier_px = 2.0;         ///< a residual below this is an inlier whatever the others are
-  int min_inliers = 6;            ///< fewer and the camera is lost
-  double min_inlier_ratio = 0.5;  ///< of the points in view
-};
-void Register(Parameters& parameters, PoseOptions& options);
 
 /// A point of the map and where the frame saw it.
 struct PoseObservation {
   Eigen::Vector3d point_world;
-  Eigen::Vector2d x;            ///< on the plane z = 1
-  Eigen::Matrix2d px_per_unit;  ///< see Feature
+  Eigen::Vector2d x;                   ///< on the plane z = 1
+  Eigen::Matrix2d J_pixel_normalized;  ///< see Feature
 };
 
 struct PoseEstimate {

@@ -11,7 +11,7 @@ struct Feature {
   Eigen::Vector2d x = Eigen::Vector2d::Zero();  ///< undistorted, on the plane z = 1
   /// Raw pixels a unit on the plane z = 1 at x: the lens's Jacobian, which turns residuals there into pixels of the
   /// sensor, where the noise lives.
-  Eigen::Matrix2d px_per_unit = Eigen::Matrix2d::Identity();
+  Eigen::Matrix2d J_pixel_normalized = Eigen::Matrix2d::Identity();
 };
 
 }  // namespace evo::odometry

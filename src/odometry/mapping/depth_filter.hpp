@@ -5,9 +5,9 @@
 #include <functional>
 #include <vector>
 
-#include "evo/core/parameters.hpp"
 #include "evo/geometry/se3.hpp"
-#include "evo/odometry/frame.hpp"
+#include "evo/odometry/odometry_options.hpp"
+#include "odometry/frontend/frame.hpp"
 
 namespace evo::odometry {
 
@@ -26,15 +26,6 @@ struct Seed {
 
   double inlier_ratio() const { return a / (a + b); }
 };
-
-struct DepthFilterOptions {
-  double pixel_noise = 0.5;        ///< px of angle that a measurement may be off, one sigma
-  double convergence = 60.0;       ///< converged when sigma < z_range / convergence
-  double epipolar_px = 2.5;        ///< a sighting farther from its epipolar line is a failed match
-  double min_inlier_ratio = 0.35;  ///< a seed with a smaller a / (a + b) is dropped
-  int max_age = 3;                 ///< key frames after which an unconverged seed is dropped
-};
-void Register(Parameters& parameters, DepthFilterOptions& options);
 
 /// Fuses one measurement of the inverse distance `x` with standard deviation `tau` by moment matching.
 void UpdateSeed(double x, double tau, Seed* seed);

@@ -4,25 +4,13 @@
 #include <utility>
 #include <vector>
 
-#include "evo/core/parameters.hpp"
-#include "evo/odometry/depth_filter.hpp"
-#include "evo/odometry/frame.hpp"
-#include "evo/odometry/map.hpp"
+#include "evo/odometry/odometry_options.hpp"
 #include "evo/odometry/point.hpp"
+#include "odometry/frontend/frame.hpp"
+#include "odometry/mapping/depth_filter.hpp"
+#include "odometry/mapping/map.hpp"
 
 namespace evo::odometry {
-
-struct MapperOptions {
-  bool window_refinement = true;  ///< bundle-adjust the last key frames at every key frame
-  int window = 8;                 ///< key frames in that window
-  int window_iterations = 6;
-  double loss_px = 1.0;    ///< width of Cauchy's loss
-  double update_px = 1.0;  ///< image motion between two updates of the depth filter
-  int old_key_frames = 6;  ///< that a new seed is measured with
-  int max_outliers = 4;    ///< contradictions after which a point may be dropped
-  DepthFilterOptions depth_filter;
-};
-void Register(Parameters& parameters, MapperOptions& options);
 
 /// A tracked frame on its way from the pose thread to the depth thread.
 struct FrameMessage {

@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "evo/odometry/mapper.hpp"
+#include "odometry/mapping/mapper.hpp"
 
 namespace evo::odometry {
 

@@ -4,8 +4,8 @@
 #include <map>
 #include <vector>
 
-#include "evo/odometry/frame.hpp"
 #include "evo/odometry/point.hpp"
+#include "odometry/frontend/frame.hpp"
 
 namespace evo::odometry {
 

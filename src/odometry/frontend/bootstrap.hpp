@@ -5,24 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "evo/core/parameters.hpp"
-#include "evo/odometry/frame.hpp"
+#include "evo/odometry/odometry_options.hpp"
 #include "evo/odometry/point.hpp"
+#include "odometry/frontend/frame.hpp"
 
 namespace evo::odometry {
-
-struct BootstrapOptions {
-  double min_disparity_px = 10.0;  ///< median image motion of a pair worth trying
-  double max_disparity_px = 30.0;  ///< beyond it the oldest frame is given up
-  double inlier_px = 1.5;          ///< Sampson error of an inlier
-  double min_inlier_ratio = 0.6;   ///< of the pair's shared tracks
-  int min_inliers = 15;
-  double min_shared_ratio = 0.5;  ///< of the tracks in the second frame: the first has seen them, too
-  double min_parallax_deg = 1.0;  ///< median angle under which a point sees the two cameras
-  double median_depth = 10.0;     ///< the map's scale: monocular odometry cannot know it
-  bool refine = true;             ///< the first map over the frames between the pair, too
-};
-void Register(Parameters& parameters, BootstrapOptions& options);
 
 /// A first map: the world is the camera of frame `first`.
 struct Bootstrap {

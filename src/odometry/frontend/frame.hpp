@@ -5,7 +5,7 @@
 
 #include "evo/core/time.hpp"
 #include "evo/geometry/se3.hpp"
-#include "evo/odometry/feature.hpp"
+#include "odometry/frontend/feature.hpp"
 
 namespace evo::odometry {
 

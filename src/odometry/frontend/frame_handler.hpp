@@ -6,32 +6,14 @@
 #include <unordered_map>
 #include <vector>
 
-#include "evo/core/parameters.hpp"
-#include "evo/odometry/bootstrap.hpp"
-#include "evo/odometry/frame.hpp"
-#include "evo/odometry/mapper.hpp"
-#include "evo/odometry/mapping_thread.hpp"
-#include "evo/odometry/pose_optimizer.hpp"
+#include "evo/odometry/odometry_options.hpp"
+#include "odometry/frontend/bootstrap.hpp"
+#include "odometry/frontend/frame.hpp"
+#include "odometry/frontend/pose_optimizer.hpp"
+#include "odometry/mapping/mapper.hpp"
+#include "odometry/mapping/mapping_thread.hpp"
 
 namespace evo::odometry {
-
-struct KeyFrameOptions {
-  double translation = 0.1;       ///< since the last key frame, as a share of the median depth
-  double rotation_deg = 10.0;     ///< since the last key frame
-  double disparity_px = 40.0;     ///< median image motion since the last key frame
-  double min_shared_ratio = 0.8;  ///< fewer of the present tracks seen by the last key frame: time for seeds
-  double min_disparity_px = 3.0;  ///< never a key frame with less image motion: the camera stands
-  int every_frames = 0;           ///< instead of all these rules a key frame every so many frames; 0: the rules
-};
-
-struct FrameHandlerOptions {
-  int lag = 2;  ///< frames after which a frame's depths are in the map, whatever the number of threads
-  BootstrapOptions bootstrap;
-  PoseOptions pose;
-  KeyFrameOptions key_frame;
-  MapperOptions mapper;
-};
-void Register(Parameters& parameters, FrameHandlerOptions& options);
 
 /// What became of one frame.
 struct FrameRecord {
