@@ -55,8 +55,8 @@ void DrawTrackFigures(const std::filesystem::path& folder, const evaluation::Lif
 std::string FormatGroundScale(const odometry::GroundScale& scale) {
   if (!scale.found) return "scale      arbitrary and not held: too short a way over a road\n";
   return Format("scale      %s, by %zu tracks on the ground along %.0f %% of the path, uncertain by %.2f %%\n",
-                scale.metric ? "metres" : "arbitrary but held", scale.tracks, 100.0 * scale.covered,
-                100.0 * scale.error);
+                scale.metric ? "metres" : "arbitrary but held", scale.tracks, 100.0 * scale.covered_ratio,
+                100.0 * scale.relative_sigma);
 }
 
 }  // namespace

@@ -72,6 +72,13 @@ SE3 SE3::operator*(const SE3& other) const {
   return {rotation_ * other.rotation_, rotation_ * other.translation_ + translation_};
 }
 
+Matrix6d Adjoint(const SE3& T) {
+  Matrix6d adjoint = Matrix6d::Zero();
+  adjoint.topLeftCorner<3, 3>() = adjoint.bottomRightCorner<3, 3>() = T.RotationMatrix();
+  adjoint.topRightCorner<3, 3>() = so3::Hat(T.translation()) * T.RotationMatrix();
+  return adjoint;
+}
+
 SE3 Interpolate(const SE3& a, const SE3& b, double s) {
   return {a.rotation().slerp(s, b.rotation()), (1.0 - s) * a.translation() + s * b.translation()};
 }

@@ -86,8 +86,8 @@ double SampsonWithJacobian(const Matrix3d& essential, const std::array<Matrix3d,
 }
 
 /// The direction of the translation that explains two pairs without a rotation. In nearly affine views (narrow lens,
-/// sideways motion) a rotation with reversed translation and depths explains all pairs almost as well, and all eight-point
-/// samples may end in that second optimum; this start leads to the first.
+/// sideways motion) a rotation with reversed translation and depths explains all pairs almost as well, and all
+/// eight-point samples may end in that second optimum; this start leads to the first.
 std::optional<Vector3d> PureTranslation(const Correspondence& a, const Correspondence& b) {
   const Vector3d normal_a = a.x1.homogeneous().cross(a.x2.homogeneous());
   const Vector3d normal_b = b.x1.homogeneous().cross(b.x2.homogeneous());
@@ -96,7 +96,8 @@ std::optional<Vector3d> PureTranslation(const Correspondence& a, const Correspon
   return t.normalized();
 }
 
-/// A motion with its inliers; `cost` is the sum of the truncated squared errors (MSAC; P. H. S. Torr, A. Zisserman, 2000).
+/// A motion with its inliers; `cost` is the sum of the truncated squared errors (MSAC; P. H. S. Torr, A. Zisserman,
+/// 2000).
 struct Candidate {
   RelativePose pose;
   double cost = 0.0;

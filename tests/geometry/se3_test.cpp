@@ -58,6 +58,15 @@ TEST(SE3, LeftJacobianMatchesFiniteDifferences) {
   }
 }
 
+TEST(SE3, AdjointTakesATwistAcrossAMotion) {
+  std::mt19937 random(6);
+  for (int trial = 0; trial < 10; ++trial) {
+    const SE3 T = SE3::Exp(RandomTwist(&random, 1.2));
+    const Vector6d xi = RandomTwist(&random, 0.7);
+    EXPECT_LT(((T * SE3::Exp(xi)).Matrix() - (SE3::Exp(Adjoint(T) * xi) * T).Matrix()).norm(), 1e-9) << trial;
+  }
+}
+
 TEST(SE3, InterpolatesAlongTheShorterArc) {
   const SE3 a;
   const SE3 b(Eigen::Quaterniond(Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ())), Eigen::Vector3d(2, 0, 0));

@@ -19,8 +19,8 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 
 struct Scene {
   int points = 100;
-  double outlier_ratio = 0.0;                      // of tracks on moving objects
-  Eigen::Vector3d step = Eigen::Vector3d::Zero();  // of the camera between frames
+  double outlier_ratio = 0.0;                          // of tracks on moving objects
+  Eigen::Vector3d step = Eigen::Vector3d::Zero();      // of the camera between frames
   Eigen::Vector3d rotation = Eigen::Vector3d::Zero();  // the same, rad
 };
 
@@ -44,7 +44,8 @@ Recording Record(const Scene& scene, std::uint32_t seed) {
     if (recording.outliers.back()) drifts.back() = {drift(random), drift(random)};
   }
   for (int i = 0; i < 40; ++i) {
-    Frame frame{FromSeconds(0.02) * i, geometry::SE3(geometry::so3::Exp(i * scene.rotation), i * scene.step).Inverse(), {}};
+    Frame frame{
+        FromSeconds(0.02) * i, geometry::SE3(geometry::so3::Exp(i * scene.rotation), i * scene.step).Inverse(), {}};
     for (int p = 0; p < scene.points; ++p) {
       const Eigen::Vector3d q = frame.T_cam_world * points[p];
       const Eigen::Vector2d px =

@@ -40,7 +40,8 @@ TEST(Resampling, DistinguishesFramesFromAsynchronousTracks) {
   EXPECT_TRUE(AreSynchronous(testing::MakeDrive({.seconds = 0.5}).tracks));
   std::mt19937 random(1);
   events::Tracks tracks;
-  for (int id = 0; id < 50; ++id) AddTrack({.id = id, .speed = 100, .interval_s = 0.002, .end_s = 0.5}, &random, &tracks);
+  for (int id = 0; id < 50; ++id)
+    AddTrack({.id = id, .speed = 100, .interval_s = 0.002, .end_s = 0.5}, &random, &tracks);
   Sort(&tracks);
   EXPECT_FALSE(AreSynchronous(tracks));
 }
@@ -64,7 +65,8 @@ TEST(Resampling, IsExactForLinearMotionAndDoesNotExtrapolate) {
 TEST(Resampling, FittedLineBeatsInterpolationOfQuantisedPositions) {
   std::mt19937 random(3);
   events::Tracks tracks;
-  for (int id = 0; id < 20; ++id) AddTrack({.id = id, .speed = 300.0 + id, .interval_s = 0.002, .quantised = true}, &random, &tracks);
+  for (int id = 0; id < 20; ++id)
+    AddTrack({.id = id, .speed = 300.0 + id, .interval_s = 0.002, .quantised = true}, &random, &tracks);
   Sort(&tracks);
   const auto rms = [&](double window) {
     double sum = 0.0;

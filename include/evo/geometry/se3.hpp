@@ -47,6 +47,9 @@ class SE3 {
   Eigen::Vector3d translation_ = Eigen::Vector3d::Zero();
 };
 
+/// Ad(T) for twists (translation, rotation): T Exp(xi) = Exp(Ad(T) xi) T.
+Matrix6d Adjoint(const SE3& T);
+
 /// The motion between `a` (s = 0) and `b` (s = 1): spherical interpolation of the rotation, linear interpolation of the
 /// translation.
 SE3 Interpolate(const SE3& a, const SE3& b, double s);

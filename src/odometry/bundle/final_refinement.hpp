@@ -10,10 +10,11 @@
 
 namespace evo::odometry {
 
-/// Bundle adjustment over the frames of one segment and all their tracks, then every frame's pose against the refined
-/// points, also of frames in [before, after) that the tracking had not reached. The first pose and the distance of the
-/// farthest stay. `frames` are all frames of the run. A track may come back as several points: long ones are cut.
-void RefineSegment(const FinalRefinementOptions& options, const std::vector<Frame>& frames, int before, int after,
-                   const std::function<void(double)>& progress, ThreadPool* pool, Segment* segment);
+/// Adjusts the frames of one segment and all their tracks together, then estimates every frame's pose against the
+/// refined points, also of frames in [begin_frame, end_frame) that the tracking has not reached. The first pose and the
+/// distance of the farthest stay. `frames` are all frames of the run. A track may give several points: long ones are
+/// cut. `progress` gets the ratio that is done; `pool` may be null.
+void RefineSegment(const FinalRefinementOptions& options, const std::vector<Frame>& frames, int begin_frame,
+                   int end_frame, const std::function<void(double)>& progress, ThreadPool* pool, Segment* segment);
 
 }  // namespace evo::odometry

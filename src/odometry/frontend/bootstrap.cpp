@@ -11,6 +11,7 @@
 #include "evo/geometry/triangulation.hpp"
 #include "evo/geometry/two_view.hpp"
 #include "odometry/bundle/bundle_adjuster.hpp"
+#include "odometry/bundle/reprojection.hpp"
 #include "odometry/frontend/pose_optimizer.hpp"
 
 namespace evo::odometry {
@@ -197,7 +198,7 @@ bool Bootstrapper::RefineMap(Bootstrap* bootstrap) const {
   const std::vector<int> chosen = ChooseFrames(static_cast<int>(bootstrap->T_cam_world.size()));
   BundleProblem problem = BuildProblem(*bootstrap, frames_, chosen);
   AdjustBundle({}, &problem);
-  if (!ResidualsAreSmall(BundleErrors(problem))) return false;
+  if (!ResidualsAreSmall(ReprojectionErrors(problem))) return false;
   std::vector<double> depths;
   for (const auto& point : problem.points) {
     if (point.inverse_depth.z() > 0.0) depths.push_back(1.0 / point.inverse_depth.z());

@@ -10,7 +10,7 @@ namespace evo::odometry {
 
 namespace {
 
-constexpr double kOffSensorPx = 1.0;     // trackers may place a border feature a little outside
+constexpr double kOffSensorPx = 1.0;      // trackers may place a border feature a little outside
 constexpr double kMaxMisfitRatio = 0.02;  // more observations outside the lens model: the calibration is another one's
 
 /// Jacobian of the raw pixel by `x` on the normalized plane z = 1, by central differences.

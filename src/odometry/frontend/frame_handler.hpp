@@ -78,9 +78,10 @@ class FrameHandler {
   PoseOptimizer optimizer_;
   Bootstrapper bootstrapper_;
   Mapper mapper_;
-  std::unordered_map<std::int64_t, Eigen::Vector3d> landmarks_;  // the map's points as the pose thread knows them, world
-  std::vector<geometry::SE3> key_poses_;                         // T_cam_world of the key frames
-  std::vector<int> key_frames_;                                  // indices of the frames
+  std::unordered_map<std::int64_t, Eigen::Vector3d>
+      landmarks_;                         // the map's points as the pose thread knows them, world
+  std::vector<geometry::SE3> key_poses_;  // T_cam_world of the key frames
+  std::vector<int> key_frames_;           // indices of the frames
   std::vector<FrameRecord> records_;
   std::vector<int> bootstraps_;
   bool tracking_ = false;

@@ -11,9 +11,9 @@ namespace evo::odometry {
 
 namespace {
 
-constexpr double kPriorCount = 10.0;       // a = b of a new seed, as in rpg_svo: an open mind about the track
-constexpr double kRangeSigmas = 6.0;       // standard deviations of a new seed in its range, as in rpg_svo
-constexpr double kMinDistance = 1e-7;      // keeps the inverse distance finite, as in rpg_svo
+constexpr double kPriorCount = 10.0;    // a = b of a new seed, as in rpg_svo: an open mind about the track
+constexpr double kRangeSigmas = 6.0;    // standard deviations of a new seed in its range, as in rpg_svo
+constexpr double kMinDistance = 1e-7;   // keeps the inverse distance finite, as in rpg_svo
 constexpr double kMinLineNorm = 1e-12;  // unit of length; at the epipole every direction fits
 
 double NormalDensity(double x, double mean, double variance) {
@@ -103,7 +103,7 @@ void DepthFilter::Update(const Frame& frame, const std::function<geometry::SE3(i
 DepthFilter::SeedState DepthFilter::Measure(const Feature& feature, const geometry::SE3& T_cam_key, Seed* seed) const {
   const auto depths = geometry::TriangulatePair(seed->x, feature.x, T_cam_key);  // equations 6-7
   if (EpipolarDistancePx(*seed, feature, T_cam_key) > options_.epipolar_px) {
-    seed->b += 1.0;  // an outlier
+    seed->b += 1.0;                                              // an outlier
   } else if (depths && depths->z1 > 0.0 && depths->z2 > 0.0) {   // else the baseline is too short for the point
     const double z = depths->z1 * seed->x.homogeneous().norm();  // along the ray
     const double tau =

@@ -23,15 +23,15 @@ struct Seed {
   double a = 10.0;                                 ///< of the Beta distribution; grows with each inlier measurement
   double b = 10.0;                                 ///< of the Beta distribution; grows with each outlier measurement
   double mu = 0.0;                                 ///< mean of the Gaussian, 1 / unit of length
-  double z_range = 0.0;                            ///< width of the uniform distribution of outliers, 1 / unit of length
-  double sigma2 = 0.0;                             ///< variance of the Gaussian, 1 / unit of length squared
+  double z_range = 0.0;  ///< width of the uniform distribution of outliers, 1 / unit of length
+  double sigma2 = 0.0;   ///< variance of the Gaussian, 1 / unit of length squared
 
   /// The expected inlier probability.
   double inlier_ratio() const { return a / (a + b); }
 };
 
-/// Updates a seed with a measured inverse distance `x` of standard deviation `tau`, by matching the first two moments of
-/// the exact posterior (Vogiatzis and Hernandez, supplementary material).
+/// Updates a seed with a measured inverse distance `x` of standard deviation `tau`, by matching the first two moments
+/// of the exact posterior (Vogiatzis and Hernandez, supplementary material).
 void UpdateSeed(double x, double tau, Seed* seed);
 
 /// Standard deviation of a triangulated distance `z` along the unit vector `ray`, whose observation in the second view

@@ -164,7 +164,7 @@ void Mapper::RefineWindow(MapUpdate* update) {
   if (end - begin <= kFixedKeyFrames) return;
   WindowProblem window = BuildWindowProblem(map_, begin, end);
   BundleProblem& problem = window.problem;
-  AdjustBundle({.iterations = options_.window_iterations, .loss_px = options_.loss_px}, &problem);
+  AdjustBundle({.max_iterations = options_.window_iterations, .cauchy_width_px = options_.loss_px}, &problem);
   for (int i = begin; i < end; ++i) map_.key_frames[i].T_cam_world = problem.T_cam_world[i - begin];
   for (std::size_t p = 0; p < window.tracks.size(); ++p) {
     if (!(problem.points[p].inverse_depth.z() > 0.0)) continue;

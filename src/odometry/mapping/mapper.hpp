@@ -21,10 +21,10 @@ struct KeyFramePose {
 
 /// A tracked frame on its way from the pose thread to the depth thread.
 struct FrameMessage {
-  int index = 0;              ///< of the frame
-  Frame frame;                ///< without its pose
-  KeyFramePose pose;          ///< of the frame
-  bool is_key_frame = false;  ///< becomes the next key frame; these are numbered from 0 without gaps
+  int index = 0;                              ///< of the frame
+  Frame frame;                                ///< without its pose
+  KeyFramePose pose;                          ///< of the frame
+  bool is_key_frame = false;                  ///< becomes the next key frame; these are numbered from 0 without gaps
   std::optional<std::vector<Point>> new_map;  ///< replaces all points at the beginning of a segment
   std::vector<std::int64_t> inliers;          ///< tracks whose points agree with the frame
   std::vector<std::int64_t> outliers;         ///< tracks whose points contradict the frame

@@ -11,8 +11,8 @@
 
 namespace evo::odometry {
 
-/// Runs a mapper beside the pose thread (D. Zhu, section "Parallel tracking and mapping"): a first-in-first-out queue of
-/// frames to it and one of map updates back. Nothing is dropped and everything is copied. The result of Collect()
+/// Runs a mapper beside the pose thread (D. Zhu, section "Parallel tracking and mapping"): a first-in-first-out queue
+/// of frames to it and one of map updates back. Nothing is dropped and everything is copied. The result of Collect()
 /// depends only on the posted messages, never on timing.
 class MappingThread {
  public:

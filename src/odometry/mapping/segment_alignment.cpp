@@ -8,10 +8,10 @@ namespace evo::odometry {
 
 namespace {
 
-constexpr std::size_t kMinPoints = 6;       // twice what a similarity needs
-constexpr int kRounds = 3;                  // of fits, each without the outliers of the one before
-constexpr double kOutlierMedians = 3.0;     // residual over the median residual
-constexpr double kMaxResidualRatio = 0.1;   // median residual over the points' spread; more: no common shape
+constexpr std::size_t kMinPoints = 6;      // twice what a similarity needs
+constexpr int kRounds = 3;                 // of fits, each without the outliers of the one before
+constexpr double kOutlierMedians = 3.0;    // residual over the median residual
+constexpr double kMaxResidualRatio = 0.1;  // median residual over the points' spread; more: no common shape
 
 }  // namespace
 
