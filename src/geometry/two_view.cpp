@@ -48,11 +48,11 @@ bool InFrontOfBoth(const Correspondence& pair, const SE3& T_2_1) {
 /// The motion, of the four, with the most points in front of both cameras.
 SE3 ChooseByCheirality(const Matrix3d& essential, std::span<const Correspondence> pairs) {
   SE3 best;
-  std::ptrdiff_t most = -1;
+  std::ptrdiff_t max_count = -1;
   for (const SE3& motion : DecomposeEssential(essential)) {
     const auto count = std::ranges::count_if(pairs, [&](const auto& pair) { return InFrontOfBoth(pair, motion); });
-    if (count > most) {
-      most = count;
+    if (count > max_count) {
+      max_count = count;
       best = motion;
     }
   }

@@ -46,13 +46,13 @@ TEST(TwoView, EightPointIsExactWithoutNoise) {
 
 TEST(TwoView, DecompositionContainsTheTrueMotion) {
   const SE3 truth(Motion().rotation(), Motion().translation().normalized());
-  double smallest = 10.0;
+  double min_error = 10.0;
   for (const SE3& motion : DecomposeEssential(EssentialMatrix(truth))) {
     const Eigen::Matrix3d essential = EssentialMatrix(motion);
     EXPECT_LT(std::min((essential - EssentialMatrix(truth)).norm(), (essential + EssentialMatrix(truth)).norm()), 1e-9);
-    smallest = std::min(smallest, (motion.Matrix() - truth.Matrix()).norm());
+    min_error = std::min(min_error, (motion.Matrix() - truth.Matrix()).norm());
   }
-  EXPECT_LT(smallest, 1e-9);
+  EXPECT_LT(min_error, 1e-9);
 }
 
 TEST(TwoView, NeedsEightPairs) {
@@ -81,7 +81,7 @@ TEST(TwoView, ResolvesTheDepthReversalOfNearlyAffineViews) {
   int right = 0;
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     std::mt19937 random(seed);
-    std::uniform_real_distribution<double> x(-0.36, 0.36), y(-0.27, 0.27), depth(0.6, 1.5), stray(-0.02, 0.02);
+    std::uniform_real_distribution<double> x(-0.36, 0.36), y(-0.27, 0.27), depth(0.6, 1.5), outlier(-0.02, 0.02);
     std::normal_distribution<double> noise(0.0, 0.5 / 335.0);
     std::vector<Correspondence> pairs;
     for (int i = 0; i < 90; ++i) {
@@ -89,7 +89,7 @@ TEST(TwoView, ResolvesTheDepthReversalOfNearlyAffineViews) {
       const Eigen::Vector3d q = truth * p;
       pairs.push_back({p.head<2>() / p.z() + Eigen::Vector2d(noise(random), noise(random)),
                        q.head<2>() / q.z() + Eigen::Vector2d(noise(random), noise(random))});
-      if (i % 7 == 0) pairs.back().x2 += Eigen::Vector2d(stray(random), stray(random));
+      if (i % 7 == 0) pairs.back().x2 += Eigen::Vector2d(outlier(random), outlier(random));
     }
     const auto pose = EstimateRelativePose(pairs, {.max_sampson_error = 1.5 / 335.0, .seed = seed});
     ASSERT_TRUE(pose);

@@ -7,8 +7,6 @@
 #include <numbers>
 #include <utility>
 
-#include "odometry/mapping/segment_alignment.hpp"
-
 namespace evo::odometry {
 
 namespace {

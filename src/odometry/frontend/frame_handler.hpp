@@ -13,6 +13,7 @@
 #include "odometry/frontend/pose_optimizer.hpp"
 #include "odometry/mapping/mapper.hpp"
 #include "odometry/mapping/mapping_thread.hpp"
+#include "odometry/mapping/segment_alignment.hpp"
 
 namespace evo::odometry {
 
