@@ -44,7 +44,7 @@ const Eigen::Vector2d& Centre() {
 events::LocalEvents GatherPatch(double radius) {
   events::LocalEvents events;
   MakeHistory().Gather({kStamp, Centre().x(), Centre().y(), kFlow.x(), kFlow.y(), radius, kHalfWindow}, &events);
-  events.Thin(static_cast<std::size_t>(TrackerOptions().most_events));
+  events.Thin(static_cast<std::size_t>(TrackerOptions().max_events));
   return events;
 }
 

@@ -39,7 +39,7 @@ FeatureTracker::FeatureTracker(const geometry::Camera& camera, const TrackerOpti
       ego_motion_(camera),
       flow_field_(width_, height_, options),
       refill_(options),
-      oddity_judge_(options.odd_share) {}
+      oddity_judge_(options.rejection_ratio) {}
 
 void FeatureTracker::Process(const events::EventHistory& history, TimeNs t, const std::function<void()>& read_ahead) {
   if (last_) Track(history, t);
@@ -81,7 +81,7 @@ std::vector<ObservedWindow> FeatureTracker::Windows() const {
 
 void FeatureTracker::Track(const events::EventHistory& history, TimeNs t) {
   AlignAll(history, t, {});
-  if (options_.follow_jolts) FollowJolt(history, t);
+  if (options_.rotation_correction) FollowJolt(history, t);
   const double step_s = ToSeconds(t - *last_);
   const std::vector<Eigen::Vector2d> filtered = FilteredPositions(step_s);
   std::vector<char> alive(features_.size());
@@ -144,8 +144,8 @@ std::vector<UnexpectedMotion> FeatureTracker::UnexpectedMotions() const {
 TimeNs FeatureTracker::HalfWindowOf(const Eigen::Vector2d& flow) const {
   const TimeNs by_motion = HalfWindow(flow, options_.window_motion_px, options_);
   const double acceleration_px_s2 = ego_motion_.lens().focal_px() * ego_motion_.turn_change();
-  const double straight_s = std::sqrt(2.0 * options_.window_bend_px / std::max(acceleration_px_s2, 1.0));
-  return std::min(by_motion, FromSeconds(std::max(straight_s, 0.5 * options_.shortest_window_s)));
+  const double straight_s = std::sqrt(2.0 * options_.window_curvature_px / std::max(acceleration_px_s2, 1.0));
+  return std::min(by_motion, FromSeconds(std::max(straight_s, 0.5 * options_.min_window_s)));
 }
 
 PatchMotion FeatureTracker::Predict(const TrackedFeature& feature, double step_s, Eigen::Vector2d* position) const {
@@ -176,20 +176,20 @@ void FeatureTracker::Align(const events::EventHistory& history, TimeNs t, const 
     return a.events.size();
   };
   a.half_window = HalfWindowOf(a.start.flow);
-  if (gather() < static_cast<std::size_t>(options_.fewest_events)) {
-    a.half_window = std::min(2 * a.half_window, FromSeconds(0.5 * options_.longest_window_s));
-    const int fewest = feature.frames < kNewbornFrames ? options_.fewest_events : options_.fewest_events_alive;
+  if (gather() < static_cast<std::size_t>(options_.min_events)) {
+    a.half_window = std::min(2 * a.half_window, FromSeconds(0.5 * options_.max_window_s));
+    const int fewest = feature.frames < kNewbornFrames ? options_.min_events : options_.min_events_established;
     if (gather() < static_cast<std::size_t>(fewest)) {
       if (MayRest(a, feature)) a.state = FeatureAlignment::State::kResting;
       return;
     }
   }
-  a.events.Thin(static_cast<std::size_t>(options_.most_events));
+  a.events.Thin(static_cast<std::size_t>(options_.max_events));
 
   // In a jolt of its own a feature may lie beyond the fine association's reach.
   if (Fit(feature, false, &a) || Fit(feature, true, &a)) {
     a.state = FeatureAlignment::State::kFound;
-  } else if (a.events.size() < static_cast<std::size_t>(options_.fewest_events) && MayRest(a, feature)) {
+  } else if (a.events.size() < static_cast<std::size_t>(options_.min_events) && MayRest(a, feature)) {
     a.state = FeatureAlignment::State::kResting;  // those are noise
   }
 }
@@ -287,7 +287,7 @@ bool FeatureTracker::Fit(const TrackedFeature& feature, bool coarse_first, Featu
   PatchMotion& motion = alignment->motion;
   motion = alignment->start;
   const auto radius = static_cast<double>(options_.patch_radius_px);
-  const auto build = [&](double sigma_px) { field.Build(feature.events, sigma_px, options_.outlier_share); };
+  const auto build = [&](double sigma_px) { field.Build(feature.events, sigma_px, options_.outlier_density_ratio); };
   const auto own_pull = [&] { return field.OwnMoments(feature.events, motion.linear, radius); };
   const auto align = [&](const PullMoments& own, int iterations, bool with_linear) {
     return AlignToTemplate(
@@ -304,9 +304,9 @@ bool FeatureTracker::Fit(const TrackedFeature& feature, bool coarse_first, Featu
   const AlignmentQuality quality = align(alignment->own_pull, options_.iterations, true);
   alignment->stray_share = 1.0 - quality.inlier_share;
   const double scale = feature.scale * std::sqrt(std::abs(motion.linear.determinant()));
-  return quality.inlier_share >= options_.fewest_inliers && quality.residual_px <= options_.largest_residual_px &&
-         motion.offset.norm() <= options_.largest_jump_px && scale < options_.largest_scale &&
-         scale > 1.0 / options_.largest_scale;
+  return quality.inlier_share >= options_.min_inlier_ratio && quality.residual_px <= options_.max_residual_px &&
+         motion.offset.norm() <= options_.max_prediction_error_px && scale < options_.max_scale &&
+         scale > 1.0 / options_.max_scale;
 }
 
 void FeatureTracker::UpdateTemplate(const events::LocalEvents& events, const PatchMotion& motion,

@@ -72,7 +72,7 @@ class FeatureTracker : public Tracker {
   FeatureTracker(const geometry::Camera& camera, const TrackerOptions& options, ThreadPool* pool);
 
   void Process(const events::EventHistory& history, TimeNs t, const std::function<void()>& read_ahead) override;
-  TimeNs before() const override { return FromSeconds(0.5 * options_.longest_window_s); }
+  TimeNs before() const override { return FromSeconds(0.5 * options_.max_window_s); }
   TimeNs after() const override { return before(); }
   events::Tracks Observations() const override;
   std::vector<ObservedWindow> Windows() const override;
@@ -113,7 +113,7 @@ class FeatureTracker : public Tracker {
   // In feature_birth.cpp.
   void Refill(const events::EventHistory& history, TimeNs t);
   /// How much a new feature must tell of its position: of the last ones, refused ones among them, the
-  /// `uninformative_share` tells less.
+  /// `uninformative_ratio` tells less.
   double LeastInformation(const std::vector<TrackedFeature>& born);
   std::optional<TrackedFeature> Birth(const events::EventHistory& history, TimeNs t, const Eigen::Vector2d& position,
                                       const std::vector<DepthSample>& depths) const;

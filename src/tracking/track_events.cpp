@@ -22,7 +22,7 @@ TrackingResult TrackEvents(events::EventReader* reader, const geometry::Camera& 
   TrackBuffer buffer(camera, options, pool, sink);
   TrackingResult result;
   const TimeNs interval = FromSeconds(options.frame_interval_s);
-  const TimeNs half_window = FromSeconds(0.5 * options.longest_window_s);
+  const TimeNs half_window = FromSeconds(0.5 * options.max_window_s);
 
   const auto process = [&](TimeNs t, const std::function<void()>& read_ahead) {
     history.DropBefore(t - tracker->before());

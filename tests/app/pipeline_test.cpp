@@ -115,9 +115,9 @@ TEST_F(PipelineTest, RunKeepsItsQualityAtNight) {
 }
 
 TEST_F(PipelineTest, OddTracksAreWithdrawnWithAllThatWasSeenOfThem) {
-  const std::string alike = "track " + Blind() + "-q --set tracker.restore_shake=false";  // which all tracks share
-  ASSERT_EQ(Run(alike + " --set tracker.odd_share=0" + To("all")), 0) << err;
-  ASSERT_EQ(Run(alike + " --set tracker.odd_share=0.2" + To("kept")), 0) << err;
+  const std::string alike = "track " + Blind() + "-q --set tracker.rotation_spline=false";  // which all tracks share
+  ASSERT_EQ(Run(alike + " --set tracker.rejection_ratio=0" + To("all")), 0) << err;
+  ASSERT_EQ(Run(alike + " --set tracker.rejection_ratio=0.2" + To("kept")), 0) << err;
   std::map<std::int64_t, events::Tracks> all, kept;
   for (const auto& observation : io::ReadTracks(folder / "all" / "tracks.txt"))
     all[observation.id].push_back(observation);

@@ -48,7 +48,7 @@ TEST(DetectCorners, FindsTheCornersOfSquaresAndNothingElse) {
 TEST(DetectCorners, KeepsItsDistanceFromFeaturesAndFromEachOther) {
   TrackerOptions options;
   options.corner_spacing_px = 15.0;
-  options.corner_closest_px = 9.0;
+  options.corner_min_spacing_px = 9.0;
   const std::vector<Vector2d> taken = {{20, 20}, {77, 77}};
   const auto nearest = [&](const std::vector<Vector2d>& corners) {
     double distance = 1e9;
@@ -93,7 +93,7 @@ TEST(DetectCorners, LeavesOutPatchesWithTooFewEvents) {
   cv::Mat image = Squares();
   image(cv::Rect(0, 0, 80, 120)) *= 0.1f;  // a corner's patch holds about 400 events, on the left 40
   TrackerOptions options;
-  options.corner_share = 0.0;
+  options.corner_quality_ratio = 0.0;
   ThreadPool pool(1);
   const auto corners = DetectCorners(image, {}, 100, 200.0, options, &pool, kAny);
   EXPECT_GE(corners.size(), 10u);
@@ -105,12 +105,12 @@ TEST(DetectCorners, TakesFaintOnesOnlyWhereStrongOnesAreTooFew) {
   image(cv::Rect(80, 0, 80, 120)) *= 0.4f;  // on the right
   const auto is_faint = [](const Vector2d& corner) { return corner.x() > 78.0; };
   TrackerOptions options;
-  options.corner_share = 0.5;
-  options.corner_weakest_share = 0.5;
+  options.corner_quality_ratio = 0.5;
+  options.corner_min_quality_ratio = 0.5;
   const auto strong = Detect(image, {}, 100, options);
   EXPECT_GE(strong.size(), 15u);
   EXPECT_EQ(std::ranges::count_if(strong, is_faint), 0);
-  options.corner_weakest_share = 0.001;
+  options.corner_min_quality_ratio = 0.001;
   EXPECT_EQ(Detect(image, {}, static_cast<int>(strong.size()), options), strong);
   const auto all = Detect(image, {}, 100, options);
   EXPECT_GE(std::ranges::count_if(all, is_faint), 15);

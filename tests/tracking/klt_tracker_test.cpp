@@ -20,12 +20,12 @@ using evo::tracking::testing::TrackedStream;
 
 constexpr int kAnyNumber = 1'000'000;
 
-/// Images of the newest `events`, none older than `longest_window_s`.
-TrackerOptions KltWith(int events, double longest_window_s) {
+/// Images of the newest `events`, none older than `max_window_s`.
+TrackerOptions KltWith(int events, double max_window_s) {
   TrackerOptions options;
   options.method = "klt";
   options.klt.events = events;
-  options.klt.longest_window_s = longest_window_s;
+  options.klt.max_window_s = max_window_s;
   return options;
 }
 
@@ -111,7 +111,7 @@ TEST(TrackerOptions, RefusesWhatIsNoMethodAndNoImage) {
   parameters.Set("tracker.method=klt");
   EXPECT_EQ(options.method, "klt");
   for (const char* setting :
-       {"tracker.method=KLT", "tracker.method=", "tracker.klt.events=0", "tracker.klt.longest_window_s=0",
+       {"tracker.method=KLT", "tracker.method=", "tracker.klt.events=0", "tracker.klt.max_window_s=0",
         "tracker.klt.patch_radius_px=1", "tracker.klt.forward_backward_px=nan", "tracker.klt.levels=3"}) {
     try {
       parameters.Set(setting);

@@ -76,7 +76,7 @@ TEST_F(TrackEventsTest, TracksFollowASceneThatTurnsBack) {
 /// the arms of one.
 double LeadOverCrosses(const Vector2d& velocity) {
   TrackerOptions options;
-  options.uninformative_share = 0.0;  // as many crosses as can be had
+  options.uninformative_ratio = 0.0;  // as many crosses as can be had
   std::vector<double> leads;
   for (unsigned seed = 4; seed < 12; ++seed) {
     const CrossScene scene(60, seed);
@@ -129,7 +129,7 @@ TEST(TrackEvents, FeaturesOutliveAStop) {
 }
 
 /// Of the tracks of eight scenes that live from before to after a bump, px.
-std::vector<Vector2d> ErrorsOverABump(bool follow_jolts, double window_bend_px) {
+std::vector<Vector2d> ErrorsOverABump(bool rotation_correction, double window_curvature_px) {
   // Along at 40 px/s, and besides 22 px up within 60 ms and back within 160 ms.
   const auto moved = [](double t) {
     const double s = t - 0.3;
@@ -137,9 +137,9 @@ std::vector<Vector2d> ErrorsOverABump(bool follow_jolts, double window_bend_px) 
     return Vector2d(40.0 * t, -22.0 * (wave(s / 0.06) - wave((s - 0.06) / 0.16)));
   };
   TrackerOptions options;
-  options.follow_jolts = follow_jolts;
-  options.window_bend_px = window_bend_px;
-  options.uninformative_share = 0.0;  // as many crosses as can be had
+  options.rotation_correction = rotation_correction;
+  options.window_curvature_px = window_curvature_px;
+  options.uninformative_ratio = 0.0;  // as many crosses as can be had
   std::vector<Vector2d> errors;
   for (unsigned seed = 6; seed < 14; ++seed) {
     const TrackedStream tracked = TrackAll(CrossScene(120, seed).Events(moved, 0.7, 1000.0), options, 2);
@@ -164,8 +164,8 @@ TEST(TrackEvents, FeaturesFollowAJolt) {
 }
 
 TEST(TrackEvents, ShortWindowsKeepFeaturesInAJolt) {
-  for (const bool follow_jolts : {true, false}) {
-    const std::vector<Vector2d> errors = ErrorsOverABump(follow_jolts, TrackerOptions().window_bend_px);
+  for (const bool rotation_correction : {true, false}) {
+    const std::vector<Vector2d> errors = ErrorsOverABump(rotation_correction, TrackerOptions().window_curvature_px);
     EXPECT_GE(errors.size(), 80u);
     EXPECT_LE(AstrayShare(errors), 0.04);
   }

@@ -36,7 +36,7 @@ KltTracker::KltTracker(int width, int height, const TrackerOptions& options, Thr
       pool_(pool),
       refill_(options) {
   // Its larger patches would overlap too much, or stick out too far.
-  options_.corner_closest_px = options_.corner_spacing_px;
+  options_.corner_min_spacing_px = options_.corner_spacing_px;
   options_.border_px = std::max(options_.border_px, kBorderPx);
 }
 

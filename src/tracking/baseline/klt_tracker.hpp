@@ -19,7 +19,7 @@ class KltTracker : public Tracker {
   KltTracker(int width, int height, const TrackerOptions& options, ThreadPool* pool);
 
   void Process(const events::EventHistory& history, TimeNs t, const std::function<void()>& read_ahead) override;
-  TimeNs before() const override { return FromSeconds(options_.klt.longest_window_s); }
+  TimeNs before() const override { return FromSeconds(options_.klt.max_window_s); }
   TimeNs after() const override { return 0; }
   events::Tracks Observations() const override;
   std::vector<std::int64_t> Withdrawn() const override { return {}; }

@@ -128,8 +128,8 @@ Corners FindCorners(const Harris& harris, int width, int height, const TrackerOp
   const auto strong =
       corners.begin() + static_cast<std::ptrdiff_t>((1.0 - kStrongCorner) * static_cast<double>(corners.size()));
   std::ranges::nth_element(corners, strong, std::ranges::greater(), &Corner::strength);
-  const auto usual = static_cast<float>(options.corner_share * strong->strength);
-  const auto weakest = std::min(usual, static_cast<float>(options.corner_weakest_share * strong->strength));
+  const auto usual = static_cast<float>(options.corner_quality_ratio * strong->strength);
+  const auto weakest = std::min(usual, static_cast<float>(options.corner_min_quality_ratio * strong->strength));
   std::erase_if(corners, [&](const Corner& corner) { return corner.strength < weakest; });
   // A total order, so that equal responses do not depend on the sort.
   std::ranges::sort(corners, [](const Corner& a, const Corner& b) {
@@ -209,7 +209,7 @@ cv::Mat CorrectedEventImage(const events::EventHistory& history, TimeNs t, const
   // Events leave their tile, so each stripe of tiles has an image of its own. The stripes do not depend on the pool.
   std::array<cv::Mat, kStripes> stripes;
   const std::size_t rows = history.tile_rows();
-  const HalfWindowLimits limits{0.5 * motion_px, 0.5 * options.shortest_window_s, 0.5 * options.longest_window_s};
+  const HalfWindowLimits limits{0.5 * motion_px, 0.5 * options.min_window_s, 0.5 * options.max_window_s};
   pool->ForEach(kStripes, [&](std::size_t i) {
     stripes[i] = cv::Mat::zeros(history.height(), history.width(), CV_32F);
     for (std::size_t row = i * rows / kStripes; row < (i + 1) * rows / kStripes; ++row) {
@@ -223,7 +223,7 @@ cv::Mat CorrectedEventImage(const events::EventHistory& history, TimeNs t, const
 }
 
 std::vector<Eigen::Vector2d> DetectCorners(const cv::Mat& image, const std::vector<Eigen::Vector2d>& taken, int count,
-                                           double fewest_events, const TrackerOptions& options, ThreadPool* pool,
+                                           double min_events, const TrackerOptions& options, ThreadPool* pool,
                                            const std::function<bool(const Eigen::Vector2d&)>& is_wanted) {
   thread_local Harris harris;
   harris.Respond(image, pool);
@@ -231,14 +231,14 @@ std::vector<Eigen::Vector2d> DetectCorners(const cv::Mat& image, const std::vect
   // Asked only of corners that are tried: most never are.
   const auto fits = [&](const Corner& corner) {
     return is_wanted({corner.x, corner.y}) &&
-           EventsAround(image, corner.x, corner.y, options.patch_radius_px) >= fewest_events;
+           EventsAround(image, corner.x, corner.y, options.patch_radius_px) >= min_events;
   };
   CornerSelection selection(image.cols, image.rows, taken);
   const std::span<const Corner> all(corners.all), strong = all.first(corners.strong);
   const auto wanted = static_cast<std::size_t>(std::max(count, 0));
   selection.Add(strong, wanted, options.corner_spacing_px, fits);
-  selection.Add(strong, wanted, options.corner_closest_px, fits);
-  selection.Add(all, wanted, options.corner_closest_px, fits);
+  selection.Add(strong, wanted, options.corner_min_spacing_px, fits);
+  selection.Add(all, wanted, options.corner_min_spacing_px, fits);
   return selection.found();
 }
 

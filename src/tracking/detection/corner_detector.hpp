@@ -20,9 +20,9 @@ cv::Mat CorrectedEventImage(const events::EventHistory& history, TimeNs t, const
 
 /// Harris corners of a corrected event image, strongest first, spread over the image: at most `count`, none nearer than
 /// the options' spacing to another or to a point of `taken`, or where those are too few the closest one, each with
-/// `fewest_events` in its patch and wanted.
+/// `min_events` in its patch and wanted.
 std::vector<Eigen::Vector2d> DetectCorners(const cv::Mat& image, const std::vector<Eigen::Vector2d>& taken, int count,
-                                           double fewest_events, const TrackerOptions& options, ThreadPool* pool,
+                                           double min_events, const TrackerOptions& options, ThreadPool* pool,
                                            const std::function<bool(const Eigen::Vector2d&)>& is_wanted);
 
 }  // namespace evo::tracking

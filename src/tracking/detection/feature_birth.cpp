@@ -51,13 +51,13 @@ void FeatureTracker::Refill(const events::EventHistory& history, TimeNs t) {
   };
   flow_field_.Update(history, t, Flows(), guess, pool_);
   const cv::Mat image = CorrectedEventImage(history, t, flow_field_, options_.corner_window_motion_px, options_, pool_);
-  const double fewest_events = options_.fewest_events * options_.corner_window_motion_px / options_.window_motion_px;
+  const double min_events = options_.min_events * options_.corner_window_motion_px / options_.window_motion_px;
   const auto missing = static_cast<std::size_t>(options_.features) - features_.size();
   const auto candidates = static_cast<int>(kCandidates * static_cast<double>(missing));
   const auto stays = [&](const Eigen::Vector2d& corner) {
-    return IsInside(corner + options_.shortest_life_s * flow_field_.At(corner.x(), corner.y()));
+    return IsInside(corner + options_.min_expected_lifetime_s * flow_field_.At(corner.x(), corner.y()));
   };
-  const auto corners = DetectCorners(image, taken, candidates, fewest_events, options_, pool_, stays);
+  const auto corners = DetectCorners(image, taken, candidates, min_events, options_, pool_, stays);
   std::vector<std::optional<TrackedFeature>> born(corners.size());
   pool_->ForEach(corners.size(), [&](std::size_t i) { born[i] = Birth(history, t, corners[i], depths); });
   std::vector<TrackedFeature> fit;
@@ -78,7 +78,7 @@ double FeatureTracker::LeastInformation(const std::vector<TrackedFeature>& born)
   for (const auto& feature : born) informations_.push_back(feature.information);
   while (informations_.size() > kRemembered) informations_.pop_front();
   std::vector<double> all(informations_.begin(), informations_.end());
-  const auto refused = static_cast<std::ptrdiff_t>(options_.uninformative_share * static_cast<double>(all.size()));
+  const auto refused = static_cast<std::ptrdiff_t>(options_.uninformative_ratio * static_cast<double>(all.size()));
   if (refused == 0) return -std::numeric_limits<double>::infinity();
   std::ranges::nth_element(all, all.begin() + refused);
   return all[static_cast<std::size_t>(refused)];
@@ -95,7 +95,7 @@ std::optional<TrackedFeature> FeatureTracker::Birth(const events::EventHistory& 
   history.Gather(
       {t, position.x(), position.y(), flow.x(), flow.y(), static_cast<double>(options_.patch_radius_px), half_window},
       &events);
-  if (events.size() < static_cast<std::size_t>(options_.fewest_events)) return std::nullopt;
+  if (events.size() < static_cast<std::size_t>(options_.min_events)) return std::nullopt;
   const double inverse_depth = ego_motion_.InverseDepth({position, flow});
   TrackedFeature feature{.position = position,
                          .filtered = position,
@@ -111,7 +111,7 @@ std::optional<TrackedFeature> FeatureTracker::Birth(const events::EventHistory& 
   motion.rate = patch.rate;
   motion.bend = patch.bend;
   Accumulate(events, motion, &feature.events);
-  if (feature.events.EffectiveCells() < options_.fewest_cells) return std::nullopt;
+  if (feature.events.EffectiveCells() < options_.min_template_area_px) return std::nullopt;
   feature.information = SmallestInformation(events, motion, feature.events);
   feature.events.Scale(static_cast<float>(1.0 / feature.events.Total()));
   return feature;

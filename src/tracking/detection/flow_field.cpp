@@ -21,14 +21,14 @@ FlowEstimator MakeEstimator(int radius_px, double cell_px, double sigma_px, doub
                             const TrackerOptions& options) {
   return {radius_px + 2,
           options.use_polarity ? 2 : 1,
-          {cell_px, sigma_px, options.outlier_share, options.iterations, settled_px}};
+          {cell_px, sigma_px, options.outlier_density_ratio, options.iterations, settled_px}};
 }
 
 bool GatherForFlow(const events::EventHistory& history, TimeNs t, double x, double y, const Eigen::Vector2d& flow,
                    int radius_px, TimeNs half_window, const TrackerOptions& options, events::LocalEvents* events) {
   history.Gather({t, x, y, flow.x(), flow.y(), static_cast<double>(radius_px), half_window}, events);
-  events->Thin(static_cast<std::size_t>(options.most_events));
-  return events->size() >= static_cast<std::size_t>(options.fewest_events);
+  events->Thin(static_cast<std::size_t>(options.max_events));
+  return events->size() >= static_cast<std::size_t>(options.min_events);
 }
 
 /// Comes near the flow, from `flow` or from nothing; false where there are too few events.
@@ -40,8 +40,8 @@ bool EstimateCoarseFlow(const events::EventHistory& history, TimeNs t, double x,
   const int radius_px = options.flow_patch_radius_px;
   const FlowEstimator coarse =
       MakeEstimator(radius_px, kCoarseCellPx, options.flow_sigma_px, kCoarselySettledPx, options);
-  const TimeNs longest = FromSeconds(0.5 * options.longest_window_s);
-  TimeNs half_window = flow->isZero() ? FromSeconds(0.5 * options.shortest_window_s)
+  const TimeNs longest = FromSeconds(0.5 * options.max_window_s);
+  TimeNs half_window = flow->isZero() ? FromSeconds(0.5 * options.min_window_s)
                                       : HalfWindow(*flow, kCautiousShare * options.window_motion_px, options);
   bool found = false;
   for (bool settled = false; !settled; half_window *= 2) {
@@ -59,7 +59,7 @@ bool EstimateCoarseFlow(const events::EventHistory& history, TimeNs t, double x,
 
 TimeNs HalfWindow(const Eigen::Vector2d& flow, double motion_px, const TrackerOptions& options) {
   const double window = motion_px / std::max(flow.norm(), 1e-3);
-  return FromSeconds(0.5 * std::min(std::max(window, options.shortest_window_s), options.longest_window_s));
+  return FromSeconds(0.5 * std::min(std::max(window, options.min_window_s), options.max_window_s));
 }
 
 bool EstimateFlow(const events::EventHistory& history, TimeNs t, double x, double y, const TrackerOptions& options,

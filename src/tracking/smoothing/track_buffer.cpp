@@ -19,7 +19,7 @@ TrackBuffer::TrackBuffer(const geometry::Camera& camera, const TrackerOptions& o
                          events::TrackSink sink)
     : camera_(camera),
       lens_(camera),
-      restore_shake_(options.restore_shake),
+      restore_shake_(options.rotation_spline),
       pool_(pool),
       sink_(std::move(sink)),
       delay_(std::max(kShakeMargin, kOldestWithdrawn * FromSeconds(options.frame_interval_s))) {}

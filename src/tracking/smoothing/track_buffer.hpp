@@ -19,7 +19,7 @@
 namespace evo::tracking {
 
 /// Holds what a tracker sees until it is final, some ten seconds, and passes it on then in the same order: with shake
-/// given back where `options.restore_shake` asks for it (see RestoreShake), and without the observations of features
+/// given back where `options.rotation_spline` asks for it (see RestoreShake), and without the observations of features
 /// that were withdrawn or seen in one frame only.
 class TrackBuffer {
  public:
