@@ -18,7 +18,8 @@ TEST(BlockSkylineMatrix, SolvesLikeADenseFactorization) {
   for (int i = 0; i < 6; ++i) {
     for (int j = first[i]; j <= i; ++j) {
       BlockSkylineMatrix::Block block = BlockSkylineMatrix::Block::NullaryExpr([&] { return normal(random); });
-      if (i == j) block = BlockSkylineMatrix::Block(block * block.transpose() + 60.0 * BlockSkylineMatrix::Block::Identity());
+      if (i == j)
+        block = BlockSkylineMatrix::Block(block * block.transpose() + 60.0 * BlockSkylineMatrix::Block::Identity());
       sparse.block(i, j) = block;
       dense.block<6, 6>(6 * i, 6 * j) = block;
       dense.block<6, 6>(6 * j, 6 * i) = block.transpose();

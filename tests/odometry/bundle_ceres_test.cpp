@@ -50,8 +50,8 @@ BundleProblem PerturbedDrive(std::uint32_t seed) {
   return problem;
 }
 
-/// The weighted sum of the errors of one track; the parameters are its point and then all poses T_cam_world as axis times
-/// angle and translation.
+/// The weighted sum of the errors of one track; the parameters are its point and then all poses T_cam_world as axis
+/// times angle and translation.
 struct Innovation {
   const BundleProblem& problem;
   std::size_t first;  // observation
@@ -90,8 +90,8 @@ struct HeldDistance {
   }
 };
 
-/// The matrix that takes the errors of the observations [first, end) of one track to normalised innovations: the inverse
-/// Cholesky factor of their covariance, in units of an innovation late in a track.
+/// The matrix that takes the errors of the observations [first, end) of one track to normalised innovations: the
+/// inverse Cholesky factor of their covariance, in units of an innovation late in a track.
 Eigen::MatrixXd WhiteningMatrix(const BundleProblem& problem, double drift, std::size_t first, std::size_t end) {
   std::vector<double> magnifications;
   for (std::size_t i = first; i < end; ++i) {
@@ -171,8 +171,11 @@ void ExpectSameMinimum(double drift, int fixed_frames, int scale_frame) {
     start.scale_frame = scale_frame;
     auto ours = start;
     auto theirs = start;
-    const BundleSummary summary =
-        AdjustBundle({.max_iterations = 300, .cauchy_width_px = kCauchyWidthPx, .drift_variance_ratio = drift, .min_relative_decrease = 1e-15}, &ours);
+    const BundleSummary summary = AdjustBundle({.max_iterations = 300,
+                                                .cauchy_width_px = kCauchyWidthPx,
+                                                .drift_variance_ratio = drift,
+                                                .min_relative_decrease = 1e-15},
+                                               &ours);
     const double cost = AdjustByCeres(drift, &theirs);
     EXPECT_LT(summary.final_cost, 0.6 * summary.initial_cost) << seed;
     EXPECT_GT(MaxPoseDifference(ours, start), 0.02) << seed;

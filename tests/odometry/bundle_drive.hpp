@@ -46,7 +46,8 @@ inline void AddTrackDrift(double step_px, std::uint32_t seed, BundleProblem* pro
     const geometry::SE3 T_cam_anchor =
         problem->T_cam_world[observation.frame] * problem->T_cam_world[bundle_point.anchor].Inverse();
     const double depth_ratio =
-        (T_cam_anchor * (bundle_point.inverse_depth.head<2>().homogeneous() / bundle_point.inverse_depth.z())).z() * bundle_point.inverse_depth.z();
+        (T_cam_anchor * (bundle_point.inverse_depth.head<2>().homogeneous() / bundle_point.inverse_depth.z())).z() *
+        bundle_point.inverse_depth.z();
     if (observation.point != point) drift.setZero();
     point = observation.point;
     observation.x += drift / depth_ratio;

@@ -45,7 +45,8 @@ double ScaleError(const Street& street, std::size_t from, std::size_t to) {
 void ExpectMetric(const Street& street, double max_local_error = 0.01) {
   const std::size_t last = street.frames.size() - 1;
   EXPECT_NEAR(ScaleError(street, 0, last), 0.0, 0.005);
-  for (std::size_t i = 0; i + 200 <= last; i += 100) EXPECT_NEAR(ScaleError(street, i, i + 200), 0.0, max_local_error) << i;
+  for (std::size_t i = 0; i + 200 <= last; i += 100)
+    EXPECT_NEAR(ScaleError(street, i, i + 200), 0.0, max_local_error) << i;
 }
 
 TEST(GroundScale, MeasuresTheScaleAndItsDrift) {

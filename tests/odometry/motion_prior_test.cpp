@@ -62,7 +62,8 @@ TEST(MotionPrior, EstimatesTheTypicalChange) {
   geometry::Vector6d velocity = geometry::Vector6d::Zero();
   for (int i = 0; i < 2000; ++i) {
     const double step = i % 3 == 0 ? 0.04 : 0.02;
-    if (i > 0) velocity += std::sqrt(0.5 * (step + times_s[i] - times_s[i - 1])) * Twist(&random, kTranslation, kRotation);
+    if (i > 0)
+      velocity += std::sqrt(0.5 * (step + times_s[i] - times_s[i - 1])) * Twist(&random, kTranslation, kRotation);
     poses.push_back(geometry::SE3::Exp(step * velocity) * poses.back());
     times_s.push_back(times_s.back() + step);
   }

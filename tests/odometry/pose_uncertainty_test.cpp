@@ -105,7 +105,8 @@ TEST(PoseUncertainty, VarianceInflationScalesTheVariances) {
   auto problem = DriveBundle(40, 500, 0.3, 1);
   problem.fixed_frames = 2;
   AdjustBundle({}, &problem);
-  EXPECT_NEAR(EstimatePoseUncertainty({.variance_inflation = 4.0, .rotation_bias_ratio = 0.0}, {}, problem)->errors.RotationSigma(0, 39),
+  EXPECT_NEAR(EstimatePoseUncertainty({.variance_inflation = 4.0, .rotation_bias_ratio = 0.0}, {}, problem)
+                  ->errors.RotationSigma(0, 39),
               2.0 * EstimatePoseUncertainty(kIndependent, {}, problem)->errors.RotationSigma(0, 39), 1e-9);
 }
 
@@ -120,7 +121,8 @@ TEST(PoseUncertainty, RotationBiasRotatesThePath) {
   for (std::size_t i = 1; i < problem.observations.size(); ++i) {
     const auto& [previous, current] = std::tie(problem.observations[i - 1], problem.observations[i]);
     if (previous.point != current.point) continue;
-    motion[current.frame].push_back(std::acos(current.x.homogeneous().normalized().dot(previous.x.homogeneous().normalized())));
+    motion[current.frame].push_back(
+        std::acos(current.x.homogeneous().normalized().dot(previous.x.homogeneous().normalized())));
   }
   std::vector<double> rotation(40);
   for (std::size_t i = 2; i < 40; ++i) {

@@ -17,7 +17,8 @@ TEST(RandomWalkSmoother, SolvesLikeADenseSystem) {
   Eigen::VectorXd right = Eigen::VectorXd::Zero(kSize);
   for (Eigen::Index node = 0; node + 1 < kSize; ++node) {
     for (int i = 0; i < 3; ++i) {
-      const double fraction = uniform(random), slope = uniform(random), value = uniform(random), weight = uniform(random);
+      const double fraction = uniform(random), slope = uniform(random), value = uniform(random),
+                   weight = uniform(random);
       smoother.AddObservation(static_cast<std::size_t>(node), fraction, slope, value, weight);
       Eigen::VectorXd J = Eigen::VectorXd::Zero(kSize);
       J.segment<2>(node) << slope * (1.0 - fraction), slope * fraction;

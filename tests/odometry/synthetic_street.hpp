@@ -16,7 +16,7 @@
 namespace evo::odometry::testing {
 
 inline constexpr double kStreetCameraHeightM = 1.5;
-inline constexpr double kStreetStepM = 0.16;    ///< from frame to frame
+inline constexpr double kStreetStepM = 0.16;  ///< from frame to frame
 inline constexpr double kStreetFocalPx = 226;
 
 struct StreetOptions {
@@ -40,9 +40,9 @@ struct StreetOptions {
 /// A drive as the odometry would have estimated it: all frames, and poses with a scale that drifts.
 struct Street {
   std::vector<Frame> frames;
-  std::vector<geometry::SE3> T_cam_world;  ///< true, m
-  std::vector<double> scale;               ///< true, m to a unit, at every frame
-  std::vector<Segment> segments;           ///< as estimated
+  std::vector<geometry::SE3> T_cam_world;    ///< true, m
+  std::vector<double> scale;                 ///< true, m to a unit, at every frame
+  std::vector<Segment> segments;             ///< as estimated
   std::map<std::int64_t, int> first_frames;  ///< of the tracks of the maps' points
 };
 
@@ -73,7 +73,8 @@ class StreetSimulator {
 
   double CameraHeight(double z) const {
     const double half = 0.5 * options_.frames * kStreetStepM;
-    return kStreetCameraHeightM * (1.0 + options_.heave * std::sin(0.6 * z) + options_.climb * std::max(0.0, z / half - 1.0));
+    return kStreetCameraHeightM *
+           (1.0 + options_.heave * std::sin(0.6 * z) + options_.climb * std::max(0.0, z / half - 1.0));
   }
 
   /// T_world_cam of a car parallel to the road and the camera in it.

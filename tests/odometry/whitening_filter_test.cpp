@@ -27,7 +27,8 @@ TEST(WhiteningFilter, InformationIsTheInverseCovariance) {
       ComputeErrorInformation(steps, std::vector<double>(25, 1.0), &information);
       // In units of an innovation's variance in steady state: that of the noise and of the drift.
       const double steady_variance = 0.5 * (drift + std::sqrt(drift * drift + 4.0 * drift));
-      const Eigen::MatrixXd expected = (1.0 + steady_variance) * testing::TrackCovariance(drift, magnifications).inverse();
+      const Eigen::MatrixXd expected =
+          (1.0 + steady_variance) * testing::TrackCovariance(drift, magnifications).inverse();
       EXPECT_LT((information - expected).cwiseAbs().maxCoeff(), 1e-9) << drift << " " << growth;
     }
   }

@@ -90,8 +90,8 @@ double RefinePoint(const NoiseModel& noise, std::size_t begin, std::size_t end, 
   return cost;
 }
 
-/// Sets the points' costs after a common step; returns the whole cost. A point with a higher cost, far away or nearly on
-/// the path, takes the better of its old and new values and is refined alone, lest it reject the step of all others.
+/// Sets the points' costs after a common step; returns the whole cost. A point with a higher cost, far away or nearly
+/// on the path, takes the better of its old and new values and is refined alone, lest it reject the step of all others.
 double UpdateCosts(const std::vector<BundlePoint>& old_points, const NoiseModel& noise,
                    const std::vector<std::size_t>& begin, ThreadPool* pool, std::vector<double>* costs,
                    BundleProblem* problem) {

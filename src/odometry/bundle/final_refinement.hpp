@@ -5,8 +5,8 @@
 
 #include "evo/core/parallel.hpp"
 #include "evo/odometry/odometry_options.hpp"
-#include "odometry/segment.hpp"
 #include "odometry/frontend/frame.hpp"
+#include "odometry/segment.hpp"
 
 namespace evo::odometry {
 

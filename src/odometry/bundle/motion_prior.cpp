@@ -56,7 +56,8 @@ VelocityChange LinearizeVelocityChange(const std::vector<geometry::SE3>& T_cam_w
   VelocityChange change;
   change.value = motions.Change();
   change.J_previous = inverse_jacobian(ad_incoming, -1.0) / incoming_s;
-  change.J_current = -inverse_jacobian(ad_outgoing, -1.0) / outgoing_s - inverse_jacobian(ad_incoming, 1.0) / incoming_s;
+  change.J_current =
+      -inverse_jacobian(ad_outgoing, -1.0) / outgoing_s - inverse_jacobian(ad_incoming, 1.0) / incoming_s;
   change.J_next = inverse_jacobian(ad_outgoing, 1.0) / outgoing_s;
   return change;
 }

@@ -12,7 +12,7 @@ namespace evo::odometry {
 /// (T. D. Barfoot: State Estimation for Robotics, 2017, chapter 10). It matters only where tracks are so few that a bad
 /// one displaces a pose.
 struct MotionPrior {
-  std::vector<double> times_s;        ///< of every pose; empty: no prior
+  std::vector<double> times_s;         ///< of every pose; empty: no prior
   double translation_weight_px = 0.0;  ///< error in px that a unit of VelocityChange's translation counts as
   double rotation_weight_px = 0.0;     ///< the same for its rotation
 };

@@ -61,7 +61,8 @@ void NormalEquations::LinearizeMotion() {
   for (std::size_t i = 1; i + 1 < motion.times_s.size(); ++i) {
     const VelocityChange change = LinearizeVelocityChange(problem_.T_cam_world, motion.times_s, i);
     const std::array jacobians = {change.J_previous, change.J_current, change.J_next};
-    for (const auto& [part, px] : {std::pair(0, motion.translation_weight_px), std::pair(3, motion.rotation_weight_px)}) {
+    for (const auto& [part, px] :
+         {std::pair(0, motion.translation_weight_px), std::pair(3, motion.rotation_weight_px)}) {
       const Eigen::Vector3d error = px * change.value.segment<3>(part);
       const double weight = CauchyWeight(error.squaredNorm() / (noise_.cauchy_width_px * noise_.cauchy_width_px));
       for (int k = 0; k < 3; ++k) {

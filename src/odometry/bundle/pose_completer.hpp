@@ -5,8 +5,8 @@
 
 #include "evo/geometry/se3.hpp"
 #include "odometry/bundle/refined_points.hpp"
-#include "odometry/segment.hpp"
 #include "odometry/frontend/frame.hpp"
+#include "odometry/segment.hpp"
 
 namespace evo::odometry {
 
@@ -48,7 +48,7 @@ class PoseCompleter {
   const std::vector<Frame>& frames_;
   const RefinedPoints& points_;
   double variance_inflation_;
-  std::map<int, Pose> poses_;           // by frame
+  std::map<int, Pose> poses_;            // by frame
   std::vector<double> rotation_sigmas_;  // of all poses relative to the points, rad
 };
 

@@ -9,8 +9,8 @@ namespace evo::odometry {
 
 namespace {
 
-constexpr int kMinInliers = 3;                // frames that agree with a point
-constexpr double kMinInverseDepth = 1e-9;     // a point beyond is at infinity and has no position
+constexpr int kMinInliers = 3;             // frames that agree with a point
+constexpr double kMinInverseDepth = 1e-9;  // a point beyond is at infinity and has no position
 
 }  // namespace
 

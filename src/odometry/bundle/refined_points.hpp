@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "evo/odometry/point.hpp"
-#include "odometry/segment.hpp"
 #include "odometry/bundle/segment_bundle.hpp"
 #include "odometry/frontend/frame.hpp"
 #include "odometry/frontend/pose_optimizer.hpp"
+#include "odometry/segment.hpp"
 
 namespace evo::odometry {
 
@@ -18,8 +18,8 @@ namespace evo::odometry {
 /// estimated.
 class RefinedPoints {
  public:
-  /// Takes the points that lie in front of the camera and agree with enough frames. `segment` is the one that the bundle
-  /// was built from.
+  /// Takes the points that lie in front of the camera and agree with enough frames. `segment` is the one that the
+  /// bundle was built from.
   RefinedPoints(const SegmentBundle& bundle, double drift_variance_ratio, const Segment& segment);
 
   /// In order of the bundle's points.

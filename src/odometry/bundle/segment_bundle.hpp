@@ -6,8 +6,8 @@
 
 #include "evo/odometry/odometry_options.hpp"
 #include "odometry/bundle/bundle_problem.hpp"
-#include "odometry/segment.hpp"
 #include "odometry/frontend/frame.hpp"
+#include "odometry/segment.hpp"
 
 namespace evo::odometry {
 

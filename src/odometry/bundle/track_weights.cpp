@@ -37,8 +37,8 @@ void SetTrackWeights(double drift_variance_ratio, BundleProblem* problem) {
   std::vector<double> weights;  // of the observed points
   for (std::size_t p = 0; p < squares.size(); ++p) {
     if (squares[p] == 0.0) continue;
-    const double variance = (kPriorDegreesOfFreedom + squares[p]) /
-                            (kPriorDegreesOfFreedom + std::max(0.0, degrees_of_freedom[p]));
+    const double variance =
+        (kPriorDegreesOfFreedom + squares[p]) / (kPriorDegreesOfFreedom + std::max(0.0, degrees_of_freedom[p]));
     problem->points[p].weight = 1.0 / std::sqrt(variance);
     weights.push_back(problem->points[p].weight);
   }

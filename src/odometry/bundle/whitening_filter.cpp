@@ -28,7 +28,8 @@ void AppendWhiteningSteps(double drift_variance_ratio, std::span<const double> m
   // Variances in units of the white noise's: the drift's in steady state (the scalar Riccati equation) and before each
   // observation.
   const double steady_variance =
-      0.5 * (drift_variance_ratio + std::sqrt(drift_variance_ratio * drift_variance_ratio + 4.0 * drift_variance_ratio));
+      0.5 *
+      (drift_variance_ratio + std::sqrt(drift_variance_ratio * drift_variance_ratio + 4.0 * drift_variance_ratio));
   double variance = 0.0;
   for (const double magnification : magnifications) {
     const double inverse = 1.0 / magnification;

@@ -20,8 +20,8 @@ namespace {
 constexpr double kInitialWindow = 0.1;  // over the typical distance of the tracks, before the height is known
 constexpr double kWindow = 3.0;         // heights to either side that the path is smoothed over
 constexpr double kMaxDistance = 40.0;   // heights of arc length from the camera that observes a track to the track
-// Lateral offset over depth below the path. Farther out there are kerbs and parked cars, and near the image's border the
-// tracks of a road drift outwards.
+// Lateral offset over depth below the path. Farther out there are kerbs and parked cars, and near the image's border
+// the tracks of a road drift outwards.
 constexpr double kMaxLateralRatio = 0.8;
 // Relative standard deviation that tracks on a road have in common: on simulated drives lengths come out so much short.
 constexpr double kCommonSigma = 0.005;
@@ -116,8 +116,8 @@ void MovePoints(const std::vector<Frame>& frames, const std::vector<geometry::SE
     if (poses.empty()) poses.push_back(0);
     const auto distance = [&](std::size_t i) { return (old_poses[i] * point.position).norm(); };
     const std::size_t nearest = *std::ranges::min_element(poses, {}, distance);
-    point.position = segment->poses[nearest].T_cam_world.Inverse() *
-                     (scales[nearest] * (old_poses[nearest] * point.position));
+    point.position =
+        segment->poses[nearest].T_cam_world.Inverse() * (scales[nearest] * (old_poses[nearest] * point.position));
   }
 }
 
@@ -127,8 +127,8 @@ std::vector<geometry::SE3> PosesOf(const Segment& segment) {
   return T_cam_world;
 }
 
-/// Multiplies every step from pose to pose by the scale there; `scales` are of all poses of the run, `information` is in
-/// the new unit.
+/// Multiplies every step from pose to pose by the scale there; `scales` are of all poses of the run, `information` is
+/// in the new unit.
 void Rescale(const std::vector<double>& scales, const ScaleInformation& information, const std::vector<Frame>& frames,
              std::vector<Segment>* segments) {
   std::size_t pose = 0;
@@ -176,8 +176,7 @@ GroundScale ScaleByGround(const GroundOptions& options, const std::vector<Frame>
       "covered, uncertain by {:.2f} %",
       min_scale, max_scale, is_metric ? "m" : "new units", quality.inliers, 100.0 * quality.covered_ratio,
       100.0 * quality.relative_sigma);
-  return {true,      is_metric, quality.inliers, quality.covered_ratio, quality.relative_sigma,
-          min_scale, max_scale};
+  return {true, is_metric, quality.inliers, quality.covered_ratio, quality.relative_sigma, min_scale, max_scale};
 }
 
 }  // namespace evo::odometry

@@ -4,8 +4,8 @@
 
 #include "evo/odometry/odometry_options.hpp"
 #include "evo/odometry/odometry_result.hpp"
-#include "odometry/segment.hpp"
 #include "odometry/frontend/frame.hpp"
+#include "odometry/segment.hpp"
 
 namespace evo::odometry {
 

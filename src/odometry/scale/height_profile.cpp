@@ -15,14 +15,14 @@ namespace evo::odometry {
 
 namespace {
 
-constexpr double kKernelWidth = 0.05;       // of the density of the heights' logarithms: twice a flat road's scatter
-constexpr double kKernelStep = 0.02;        // between the heights that are tried
-constexpr double kKernelReach = 3.0;        // widths
-constexpr double kMaxRelativeSigma = 0.1;   // a track less certain than this says nothing of the height
-constexpr double kRoughness = 0.01;         // of the ground, in heights
-constexpr double kRollSigma = 0.05;         // rad, prior
-constexpr double kBreakSigma = 0.3;         // relative change of the scale where it was lost
-constexpr double kMadToSigma = 1.4826;      // median absolute deviation of a Gaussian to its standard deviation
+constexpr double kKernelWidth = 0.05;      // of the density of the heights' logarithms: twice a flat road's scatter
+constexpr double kKernelStep = 0.02;       // between the heights that are tried
+constexpr double kKernelReach = 3.0;       // widths
+constexpr double kMaxRelativeSigma = 0.1;  // a track less certain than this says nothing of the height
+constexpr double kRoughness = 0.01;        // of the ground, in heights
+constexpr double kRollSigma = 0.05;        // rad, prior
+constexpr double kBreakSigma = 0.3;        // relative change of the scale where it was lost
+constexpr double kMadToSigma = 1.4826;     // median absolute deviation of a Gaussian to its standard deviation
 // The noise factor of tracks on the ground is near 1, that of other structure is larger.
 constexpr double kMinNoiseFactor = 0.1;
 constexpr double kMaxNoiseFactor = 2.0;
@@ -32,10 +32,10 @@ constexpr std::array kGates = {0.3, 0.2, 0.15, 0.1, 0.07, 0.05, 0.03, 0.0, 0.0, 
 constexpr double kNoiseGateSigmas = 3.0;
 constexpr double kMaxNodes = 1e5;  // bounds memory for whatever height outliers suggest
 constexpr std::size_t kMinTracks = 20;
-constexpr std::size_t kSectionNodes = 10;       // nodes (heights of arc length) on which most observations have to agree
-constexpr double kMinAgreeingInSection = 0.5;   // ratio of its observations
-constexpr double kMinAgreeingSections = 0.9;    // ratio, by their number of observations
-constexpr double kCoveredSigma = 0.01;          // relative, where the height counts as known
+constexpr std::size_t kSectionNodes = 10;      // nodes (heights of arc length) on which most observations have to agree
+constexpr double kMinAgreeingInSection = 0.5;  // ratio of its observations
+constexpr double kMinAgreeingSections = 0.9;   // ratio, by their number of observations
+constexpr double kCoveredSigma = 0.01;         // relative, where the height counts as known
 
 /// The mode of the observations' inverse heights: the maximum of a kernel density over their logarithms, weighted by
 /// their certainty; 0 without any.

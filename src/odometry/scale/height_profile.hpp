@@ -6,8 +6,9 @@
 
 namespace evo::odometry {
 
-/// A track below the path, which may lie on the ground. It is described by its inverse depth below the path: noise moves
-/// a track along its ray, and the error of its inverse depth is unbiased and independent of where the noise has put it.
+/// A track below the path, which may lie on the ground. It is described by its inverse depth below the path: noise
+/// moves a track along its ray, and the error of its inverse depth is unbiased and independent of where the noise has
+/// put it.
 struct GroundObservation {
   double arc_length = 0.0;      ///< of the path's place above the track
   double inverse_height = 0.0;  ///< 1 / depth below the path
@@ -30,9 +31,9 @@ struct HeightProfileQuality {
 
 /// The height of a path above the ground by arc length, piecewise linear in the inverse height.
 struct HeightProfile {
-  double spacing = 0.0;                     ///< arc length between the nodes, of which there are at least two
-  std::vector<double> inverse_heights;      ///< at each node
-  double roll = 0.0;                        ///< of the ground against the camera, rad
+  double spacing = 0.0;                 ///< arc length between the nodes, of which there are at least two
+  std::vector<double> inverse_heights;  ///< at each node
+  double roll = 0.0;                    ///< of the ground against the camera, rad
   double path_length_in_heights = 0.0;  ///< arc length of the path over the typical height
   HeightProfileQuality quality;
 

@@ -6,8 +6,8 @@ namespace evo::odometry {
 
 namespace {
 
-constexpr double kNodesPerWindow = 10.0;     // resolves the parabolas, and costs little
-constexpr std::size_t kMinNeighbours = 2;    // on either side: three nodes define a parabola, five smooth one
+constexpr double kNodesPerWindow = 10.0;   // resolves the parabolas, and costs little
+constexpr std::size_t kMinNeighbours = 2;  // on either side: three nodes define a parabola, five smooth one
 constexpr std::size_t kMinParabolaNodes = 3;
 constexpr double kMinNormal = 1e-3;  // length of a unit vector's part that still defines a direction
 

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "odometry/segment.hpp"
 #include "odometry/frontend/frame.hpp"
+#include "odometry/segment.hpp"
 
 namespace evo::odometry {
 

@@ -12,8 +12,9 @@ namespace evo::odometry {
 /// The errors that the poses of an adjusted bundle may have.
 struct PoseUncertainty {
   PoseErrorSamples errors;
-  /// All poses but those at either end, at most a tenth of all, whose rotation is much more uncertain by the tracks than
-  /// the typical one: a few young tracks, or the last ones left, know little, and the first pose rotates the whole path.
+  /// All poses but those at either end, at most a tenth of all, whose rotation is much more uncertain by the tracks
+  /// than the typical one: a few young tracks, or the last ones left, know little, and the first pose rotates the whole
+  /// path.
   PoseRange certain_range;
 };
 
