@@ -27,17 +27,17 @@ class GroundTruthOutput {
  public:
   GroundTruthOutput(const fs::path& path, const simulation::SimulatedRun& run, const geometry::Trajectory& poses,
                     bool with_flow, TimeNs start, ThreadPool* pool)
-      : motion_(run.motion),
+      : T_world_cam_(run.T_world_cam),
         rectified_(geometry::Rectified(run.camera.calibration())),
-        rectified_depth_(run.scene, rectified_, pool),
+        rectified_depth_(*run.scene, rectified_, pool),
         with_flow_(with_flow),
         start_(start),
         file_(path, poses, poses) {}
 
   void OnDepth(TimeNs t, const events::DepthMap& depth) {
-    const geometry::SE3 T_world_cam = motion_(t);
+    const geometry::SE3 T_world_cam = T_world_cam_(t);
     file_.AppendDepth(start_ + t, depth);
-    events::DepthMap rectified = rectified_depth_.At(t, T_world_cam);
+    events::DepthMap rectified = rectified_depth_.Render(t, T_world_cam);
     file_.AppendRectifiedDepth(start_ + t, rectified);
     if (with_flow_ && last_) {
       file_.AppendFlow(start_ + last_->t,
@@ -54,7 +54,7 @@ class GroundTruthOutput {
     events::DepthMap depth;  ///< rectified
   };
 
-  const simulation::CameraMotion& motion_;
+  const simulation::PoseFunction& T_world_cam_;
   geometry::Camera rectified_;
   simulation::DepthCamera rectified_depth_;
   bool with_flow_;

@@ -8,7 +8,8 @@
 #include "evo/core/parallel.hpp"
 #include "evo/core/parameters.hpp"
 #include "evo/geometry/trajectory.hpp"
-#include "evo/simulation/scene_options.hpp"
+#include "evo/simulation/simulate.hpp"
+#include "evo/simulation/simulated_run.hpp"
 
 namespace evo::app {
 

@@ -14,7 +14,10 @@
 #include "app/staged_folder.hpp"
 #include "evo/core/error.hpp"
 #include "evo/core/format.hpp"
-#include "evo/simulation/scene_options.hpp"
+#include "evo/core/parallel.hpp"
+#include "evo/core/progress.hpp"
+#include "evo/simulation/simulate.hpp"
+#include "evo/simulation/simulated_run.hpp"
 
 namespace evo::app {
 
@@ -126,7 +129,7 @@ void RunSimulate(const SimulateArguments& arguments, const std::vector<std::stri
   const Order order(arguments, config);
   const simulation::SimulatedRun run =
       NamingPlace(order.place, [&] { return ChosenPart(arguments, config.scene, simulation::MakeRun(config.scene)); });
-  const geometry::Trajectory poses = simulation::Sample(run.motion, run.duration, config.output.pose_hz);
+  const geometry::Trajectory poses = simulation::SamplePoses(run.T_world_cam, run.duration, config.output.pose_hz);
   RunRecord record(command_line, config.parameters);
   AddInputs(arguments, config.scene, &record);
 
@@ -140,10 +143,7 @@ void RunSimulate(const SimulateArguments& arguments, const std::vector<std::stri
       arguments.preview_every_s > 0.0 ? static_cast<simulation::SimulationSink*>(&preview) : output.get();
   const simulation::SimulationCounts counts = record.Time("simulate", [&] {
     Progress progress("simulate", !arguments.common.quiet);
-    const TimeNs lead_in = std::min(FromSeconds(config.scene.simulation.lead_in_s), run.before);
-    return simulation::Simulate(run.scene, run.camera, run.motion, lead_in, run.duration, config.scene.sensor,
-                                config.scene.simulation, static_cast<std::uint64_t>(config.scene.seed), &pool,
-                                &progress, sink);
+    return simulation::Simulate(run, config.scene, &pool, sink, &progress);
   });
   output->Commit();
   AddCounts(counts, &record);

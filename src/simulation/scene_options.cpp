@@ -1,136 +1,132 @@
 #include "evo/simulation/scene_options.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
-#include "evo/core/error.hpp"
-#include "evo/geometry/known_cameras.hpp"
-#include "evo/io/calibration_io.hpp"
-#include "evo/io/trajectory_io.hpp"
+#include "evo/core/parameters.hpp"
+#include "simulation/motion/bumps.hpp"
 
 namespace evo::simulation {
 
 namespace {
 
-constexpr double kViewAhead = 250.0;  // m of road beyond the end of the drive, so that the street is never seen to end
-
-constexpr double kMostPixels = 4e6;  // four times the largest event camera, at some 150 bytes each
-
-geometry::Calibration FindCalibration(const std::string& name) {
-  if (name == "davis346") return geometry::MvsecDavis346();
-  if (name == "davis240c") return geometry::UzhDavis240c();
-  const geometry::Calibration calibration = io::ReadCalibration(name);
-  const std::string size = std::to_string(calibration.width) + " x " + std::to_string(calibration.height) + " px";
-  if (static_cast<double>(calibration.width) * calibration.height > kMostPixels) {
-    throw Error(ErrorKind::kInput, name + ": a sensor of " + size + " is too large to be simulated; 4 million are not");
-  }
-  return calibration;
+void Register(Parameters& p, StreetOptions& o) {
+  p.Add("street.road_width_m", &o.road_width_m, 5.0, 20.0,
+        "width of both lanes; the camera drives in the right one (m)");
+  p.Add("street.parking_width_m", &o.parking_width_m, 0.0, 5.0, "width of the parking strip on each side (m)");
+  p.Add("street.pavement_width_m", &o.pavement_width_m, 1.0, 10.0, "width of the pavement on each side (m)");
+  p.Add("street.house_share", &o.house_share, 0.0, 1.0, "ratio of the road's length lined with houses");
+  p.Add("street.trees_per_100_m", &o.trees_per_100_m, 0.0, 40.0, "trees on both sides together");
+  p.Add("street.poles_per_100_m", &o.poles_per_100_m, 0.0, 40.0, "street lamps, some with traffic signs");
+  p.Add("street.parked_cars_per_100_m", &o.parked_cars_per_100_m, 0.0, 36.0,
+        "parked cars on both sides together; a parking strip narrower than a car has none");
+  p.Add("street.oncoming_cars_per_100_m", &o.oncoming_cars_per_100_m, 0.0, 12.0, "cars in the opposite lane");
+  p.Add("street.oncoming_car_speed_m_s", &o.oncoming_car_speed_m_s, 0.0, 40.0, "speed of the oncoming cars (m/s)");
+  p.Add("street.cars_ahead", &o.cars_ahead, 0, 20,
+        "cars ahead in the camera's lane that drive as it does; motion.kind vehicle only");
+  p.Add("street.light", &o.light, {"day", "night"}, "night: street lamps, head lamps and lit windows");
+  p.Add("street.night_ambient", &o.night_ambient, 0.0, 1.0, "ambient light at night over that of the day");
+  p.Add("street.head_lamps", &o.head_lamps, 0.0, 1000.0,
+        "radiance of a white surface 1 m ahead of the camera at night");
+  p.Add("street.lamp_flicker_hz", &o.lamp_flicker_hz, 0.0, 1000.0, "flicker frequency of the street lamps (Hz)");
 }
 
-Error Misfit(const std::string& what) { return {ErrorKind::kConfiguration, what}; }
-
-geometry::Trajectory ReadMotionFile(const SceneOptions& options) {
-  if (options.motion_file.empty()) {
-    throw Misfit("motion.kind is 'file' but motion.file names none; give a TUM trajectory");
-  }
-  geometry::Trajectory trajectory = io::ReadTum(options.motion_file);
-  if (trajectory.size() < 2) {
-    throw Error(ErrorKind::kInput, options.motion_file + ": a single pose is no motion; give two or more");
-  }
-  return trajectory;
+void Register(Parameters& p, VehicleOptions& o) {
+  const std::string prefix = "motion.vehicle.";
+  const auto add = [&](const char* name, double* value, double lowest, double highest, const char* help) {
+    p.Add(prefix + name, value, lowest, highest, help);
+  };
+  add("duration_s", &o.duration_s, 0.1, 36'000.0, "length of the run (s)");
+  add("speed_m_s", &o.speed_m_s, 0.1, 40.0, "cruising speed (m/s)");
+  add("acceleration_m_s2", &o.acceleration_m_s2, 0.1, 8.0, "maximum acceleration and deceleration (m/s^2)");
+  add("stop_every_s", &o.stop_every_s, 0.0, 3600.0, "period at which the car brakes to a stop (s); 0: never");
+  add("stand_s", &o.stand_s, 0.0, 3600.0, "length of a stop (s)");
+  add("start_at_rest_s", &o.start_at_rest_s, 0.0, 3600.0,
+      "length of the stand at the start (s); 0: starts at full speed");
+  add("turn_speed_m_s", &o.turn_speed_m_s, 0.5, 40.0,
+      "speed in right-angle turns; wider bends have the same lateral acceleration (m/s)");
+  add("camera_height_m", &o.camera_height_m, 0.2, 5.0, "height of the camera above the road (m)");
+  add("camera_pitch_deg", &o.camera_pitch_deg, -45.0, 45.0, "pitch of the camera, positive: looks down (degrees)");
+  add("vibration_deg", &o.vibration_deg, 0.0, 5.0, "standard deviation of the vibration about each axis (degrees)");
+  add("vibration_hz", &o.vibration_hz, 0.1, 100.0, "mean frequency of the vibration (Hz)");
+  p.Add(
+      prefix + "bumps_at_s", &o.bumps_at_s,
+      [](const std::string& text) { return ParseBumpTimes(text, 0.0).has_value(); },
+      "times in s (\"52,60\"), \"every 5\" (0.1 or more) or empty", "times of the road's bumps; empty: none");
+  add("bump_pitch_deg", &o.bump_pitch_deg, 0.0, 20.0, "peak pitch of a bump (degrees)");
+  add("bump_heave_m", &o.bump_heave_m, 0.0, 0.5, "peak heave of a bump (m)");
+  add("bump_roll_deg", &o.bump_roll_deg, 0.0, 20.0, "peak roll of a bump, to a random side (degrees)");
 }
 
-/// The motion and how far it leads along a road.
-struct Motion {
-  CameraMotion T_world_cam;
-  TimeNs duration = 0;
-  double distance_m = 0.0;
-};
-
-RoadLine MakeRoad(const SceneOptions& options, double distance_m) {
-  const double length = options.road_length_m > 0.0 ? options.road_length_m : distance_m + kViewAhead;
-  return {options.road_shape, length, options.road_slope, static_cast<std::uint64_t>(options.seed)};
+void Register(Parameters& p, HandheldOptions& o) {
+  p.Add("motion.handheld.duration_s", &o.duration_s, 0.1, 36'000.0, "length of the run (s)");
+  p.Add("motion.handheld.translation_m", &o.translation_m, 0.0, 10.0,
+        "standard deviation of the position on each axis (m)");
+  p.Add("motion.handheld.rotation_deg", &o.rotation_deg, 0.0, 40.0,
+        "standard deviation of the rotation about each axis (degrees)");
+  p.Add("motion.handheld.frequency_hz", &o.frequency_hz, 0.01, 20.0, "maximum frequency of the motion (Hz)");
 }
 
-/// Every motion but the vehicle's, which needs the road.
-Motion MakeFreeMotion(const SceneOptions& options) {
-  if (options.motion == "handheld") {
-    return {MakeHandheldMotion(options.handheld, static_cast<std::uint64_t>(options.seed)),
-            FromSeconds(options.handheld.duration_s), 0.0};
-  }
-  if (options.motion == "slider") {
-    return {MakeSliderMotion(options.slider), FromSeconds(options.slider.duration_s), options.slider.length_m};
-  }
-  const geometry::Trajectory trajectory = ReadMotionFile(options);
-  return {MakeMotionThrough(trajectory), trajectory.back().t - trajectory.front().t, geometry::PathLength(trajectory)};
+void Register(Parameters& p, SliderOptions& o) {
+  p.Add("motion.slider.duration_s", &o.duration_s, 0.2, 36'000.0, "length of the run (s)");
+  p.Add("motion.slider.length_m", &o.length_m, 0.0, 100.0, "distance along the camera's x axis (m)");
+}
+
+void Register(Parameters& p, SensorOptions& o) {
+  p.Add("sensor.threshold_on", &o.threshold_on, 0.01, 10.0,
+        "contrast threshold of positive events: change of log radiance, mean over the pixels");
+  p.Add("sensor.threshold_off", &o.threshold_off, 0.01, 10.0, "contrast threshold of negative events");
+  p.Add("sensor.threshold_spread", &o.threshold_spread, 0.0, 1.0,
+        "threshold mismatch: standard deviation of both thresholds over the pixels");
+  p.Add("sensor.bandwidth_hz", &o.bandwidth_hz, 0.0, 1e6,
+        "cut-off frequency of the photoreceptor's low-pass at radiance 1 and above (Hz); 0: no low-pass");
+  p.Add("sensor.dark_bandwidth_hz", &o.dark_bandwidth_hz, 0.01, 1e6,
+        "cut-off frequency in the dark; it is proportional to radiance between the two (Hz)");
+  p.Add("sensor.refractory_s", &o.refractory_s, 0.0, 1.0, "refractory period of a pixel after an event (s)");
+  p.Add("sensor.leak_hz", &o.leak_hz, 0.0, 1000.0, "rate of leak events of a pixel that sees no change (Hz)");
+  p.Add("sensor.shot_noise_hz", &o.shot_noise_hz, 0.0, 1000.0,
+        "rate of shot noise events of a dark pixel; a pixel of radiance 1 has a quarter (Hz)");
+  p.Add("sensor.hot_pixels", &o.hot_pixels, 0.0, 1.0, "ratio of hot pixels, which fire by themselves");
+  p.Add("sensor.hot_rate_hz", &o.hot_rate_hz, 0.0, 1e5, "mean event rate of a hot pixel (Hz)");
+  p.Add("sensor.dead_pixels", &o.dead_pixels, 0.0, 1.0, "ratio of pixels that never fire");
+  p.Add("sensor.dark_radiance", &o.dark_radiance, 1e-6, 10.0, "dark current, as a radiance added to the scene's");
+  p.Add("sensor.readout_row_s", &o.readout_row_s, 0.0, 0.1,
+        "period of a row's readout, which stamps its events (s); 0: events are stamped at once");
+}
+
+void Register(Parameters& p, SimulationOptions& o) {
+  p.Add("simulation.samples", &o.samples, 1, 8, "rays per pixel along each side");
+  p.Add("simulation.max_step_px", &o.max_step_px, 0.05, 10.0, "maximum motion in a tile between two renders (px)");
+  p.Alias("simulation.largest_step_px", "simulation.max_step_px");
+  p.Add("simulation.max_step_s", &o.max_step_s, 1e-4, 0.01, "maximum time between two renders of a tile (s)");
+  p.Alias("simulation.longest_step_s", "simulation.max_step_s");
+  p.Add("simulation.tile_px", &o.tile_px, 4, 256, "side of the tiles, which have render rates of their own (px)");
+  p.Add("simulation.lead_in_s", &o.lead_in_s, 0.0, 10.0,
+        "time that the sensor sees the scene before the sequence begins, unless that is the scene's start (s)");
+  p.Add("simulation.image_hz", &o.image_hz, 0.0, 1000.0, "rate of grey images (Hz); 0: none");
+  p.Add("simulation.depth_hz", &o.depth_hz, 0.0, 1000.0, "rate of depth maps, about 0.2 MB each (Hz); 0: none");
 }
 
 }  // namespace
 
 void Register(Parameters& p, SceneOptions& o) {
   const auto any = [](const std::string&) { return true; };
-  p.Add("scene.seed", &o.seed, 0, std::numeric_limits<int>::max(), "of all that is left to chance");
-  p.Add("scene.kind", &o.kind, {"street", "room", "slider"}, "the world");
-  p.Add("motion.kind", &o.motion, {"vehicle", "handheld", "slider", "file"}, "of the camera");
-  p.Add("motion.file", &o.motion_file, any, "path", "trajectory for kind: file (TUM text), gaps are bridged smoothly");
-  const auto named = [](const std::string& text) { return !text.empty(); };
-  p.Add("scene.calibration", &o.calibration, named, "davis346, davis240c or the path of a calibration",
-        "of the camera");
-  p.Add("road.shape", &o.road_shape, {"straight", "curved", "turns"}, "turns: at right angles");
-  p.Add("road.length_m", &o.road_length_m, 0.0, 1e5, "0: what the motion needs (m)");
-  p.Add("road.slope", &o.road_slope, 0.0, 0.3, "steepest of the hills (rise over run)");
+  const auto not_empty = [](const std::string& text) { return !text.empty(); };
+  p.Add("scene.seed", &o.seed, 0, std::numeric_limits<int>::max(), "seed of all random numbers");
+  p.Add("scene.kind", &o.kind, {"street", "room", "slider"}, "world");
+  p.Add("motion.kind", &o.motion, {"vehicle", "handheld", "slider", "file"}, "motion of the camera");
+  p.Add("motion.file", &o.motion_file, any, "path",
+        "trajectory for kind: file (TUM text); a cubic spline passes through its poses");
+  p.Add("scene.calibration", &o.calibration, not_empty, "davis346, davis240c or the path of a calibration",
+        "calibration of the camera");
+  p.Add("road.shape", &o.road_shape, {"straight", "curved", "turns"}, "turns: right-angle turns at junctions");
+  p.Add("road.length_m", &o.road_length_m, 0.0, 1e5, "length of the road (m); 0: as the motion needs");
+  p.Add("road.slope", &o.road_slope, 0.0, 0.3, "maximum slope of the hills (rise over run)");
   Register(p, o.street);
   Register(p, o.vehicle);
   Register(p, o.handheld);
   Register(p, o.slider);
   Register(p, o.sensor);
   Register(p, o.simulation);
-}
-
-SimulatedRun MakeRun(const SceneOptions& options) {
-  const auto seed = static_cast<std::uint64_t>(options.seed);
-  const geometry::Camera camera(FindCalibration(options.calibration));
-  if (options.motion == "vehicle") {
-    if (options.kind != "street") {
-      throw Misfit("motion.kind is 'vehicle' but scene.kind '" + options.kind +
-                   "' has no road; choose handheld, slider or file");
-    }
-    const RoadLine road = MakeRoad(options, options.vehicle.duration_s * options.vehicle.speed_m_s);
-    const TimeNs duration = FromSeconds(options.vehicle.duration_s);
-    const VehicleMotion motion = MakeVehicleMotion(road, options.vehicle, seed);
-    return {MakeStreet(road, options.street, options.vehicle.camera_height_m, seed, motion.distance_m), camera,
-            motion.T_world_cam, duration};
-  }
-  const Motion motion = MakeFreeMotion(options);
-  const auto world = [&] {
-    if (options.kind == "room") return MakeRoom(seed);
-    if (options.kind == "slider") return MakeSliderScene(seed);
-    return MakeStreet(MakeRoad(options, motion.distance_m), options.street, options.vehicle.camera_height_m, seed);
-  };
-  return {world(), camera, motion.T_world_cam, motion.duration};
-}
-
-SimulatedRun PartOf(const SimulatedRun& run, TimeNs from, TimeNs duration) {
-  if (from < 0 || duration <= 0 || from + duration > run.duration) {
-    throw Error(ErrorKind::kUsage,
-                "the part lies outside of the motion, which ends after " + FormatTime(run.duration) + " s");
-  }
-  const auto later = [from]<class Motion>(const Motion& motion) -> Motion {
-    return [motion, from](TimeNs t) { return motion(t + from); };
-  };
-  SimulatedRun part{run.scene, run.camera, later(run.motion), duration, run.before + from};
-  for (Body& body : part.scene.bodies) body.T_world_body = later(body.T_world_body);
-  return part;
-}
-
-geometry::Trajectory Sample(const CameraMotion& motion, TimeNs duration, double hz) {
-  geometry::Trajectory trajectory;
-  for (std::size_t k = 0;; ++k) {
-    const TimeNs t = std::min(FromSeconds(static_cast<double>(k) / hz), duration);
-    trajectory.push_back({t, motion(t)});
-    if (t == duration) return trajectory;
-  }
 }
 
 }  // namespace evo::simulation

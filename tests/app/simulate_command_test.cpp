@@ -11,7 +11,7 @@
 #include "evo/io/checksum.hpp"
 #include "evo/io/track_io.hpp"
 #include "evo/io/trajectory_io.hpp"
-#include "evo/simulation/scene_options.hpp"
+#include "evo/simulation/simulated_run.hpp"
 #include "io/hdf5/hdf5.hpp"
 #include "simulation/render_scene.hpp"
 
@@ -112,13 +112,13 @@ TEST_F(SimulateCommandTest, RectifiedMapsAreThoseOfAnIdealLens) {
   std::vector<double> flow(2 * 90 * 120);
   truth.Open("davis/left/depth_image_rect").Read(1, 1, depth.data());
   truth.Open("davis/left/flow_dist").Read(1, 1, flow.data());
-  const geometry::SE3 T_world_now = run.motion(50'000'000);
-  const geometry::SE3 T_next_now = run.motion(100'000'000).Inverse() * T_world_now;
+  const geometry::SE3 T_world_now = run.T_world_cam(50'000'000);
+  const geometry::SE3 T_next_now = run.T_world_cam(100'000'000).Inverse() * T_world_now;
   double longest = 0.0;
   for (int i = 0; i < 90 * 120; i += 37) {
     const Eigen::Vector2d pixel(i % 120, i / 120);
     const Eigen::Vector2d ray((pixel.x() - 60.0) / 90.0, (pixel.y() - 45.0) / 90.0);
-    const simulation::Hit hit = CastRay(run.scene, ray, 50'000'000, T_world_now);
+    const simulation::Hit hit = CastRay(*run.scene, ray, 50'000'000, T_world_now);
     if (hit.margin < 1e-4) continue;
     const Eigen::Vector2d moved = ideal.Project(T_next_now * (hit.depth * ray.homogeneous())) - pixel;
     const auto place = static_cast<std::size_t>(i);
@@ -159,7 +159,7 @@ events::Tracks FollowPoints(const simulation::SimulatedRun& run, int count, Time
   Random random(3);
   const auto surface_at = [&](const Eigen::Vector2d& pixel, TimeNs t, double* depth) {
     const auto ray = run.camera.Contains(pixel) ? run.camera.Undistort(pixel) : std::nullopt;
-    const simulation::Hit hit = ray ? CastRay(run.scene, *ray, t, run.motion(t)) : simulation::Hit();
+    const simulation::Hit hit = ray ? CastRay(*run.scene, *ray, t, run.T_world_cam(t)) : simulation::Hit();
     if (depth) *depth = hit.depth;
     return hit.surface;
   };
@@ -175,9 +175,9 @@ events::Tracks FollowPoints(const simulation::SimulatedRun& run, int count, Time
       inside = inside && surface_at(first + side, start, nullptr) == surface;
     }
     if (!inside) continue;
-    const Eigen::Vector3d point = run.motion(start) * (depth * run.camera.Undistort(first)->homogeneous());
+    const Eigen::Vector3d point = run.T_world_cam(start) * (depth * run.camera.Undistort(first)->homogeneous());
     for (TimeNs t = start; t <= end; t += kStep) {
-      const Eigen::Vector2d pixel = run.camera.Project(run.motion(t).Inverse() * point);
+      const Eigen::Vector2d pixel = run.camera.Project(run.T_world_cam(t).Inverse() * point);
       if (surface_at(pixel, t, nullptr) != surface) break;
       tracks.push_back({id, t, pixel.x(), pixel.y()});
     }

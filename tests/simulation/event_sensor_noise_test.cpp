@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "evo/simulation/event_sensor.hpp"
+#include "simulation/sensor/event_sensor.hpp"
 #include "simulation/sensor_stimulus.hpp"
 
 // Noise against its expectations, and the sensor as it comes.
@@ -18,7 +18,7 @@ using test::Show;
 
 constexpr TimeNs kMs = 1'000'000;
 
-TEST(SensorNoise, LeakMakesPositiveEventsAtItsRate) {
+TEST(SensorNoise, LeakEventsArePositiveAndHaveTheirRate) {
   SensorOptions options = IdealSensor(0.3, 0.2);
   options.leak_hz = 2.0;
   Show show(20, 20, options);
@@ -73,11 +73,11 @@ TEST(SensorNoise, ShotNoiseIsPoissonAndFallsWithLight) {
     EXPECT_NEAR(counts.variance, expected, 3.0 * expected * std::sqrt(2.0) / 50.0 + 0.1) << radiance;
     EXPECT_NEAR(counts.positive, 0.5, 3.0 * 0.5 / std::sqrt(2500.0 * expected)) << radiance;
   }
-  // A blind pixel has none: 1 / rate + refractory between two.
+  // None within the refractory period: the mean interval is 1 / rate + refractory_s.
   EXPECT_NEAR(ShotNoise(4.0, 0.0F, 0.05).mean, 5.0 / 0.3, 0.2);
 }
 
-TEST(SensorNoise, LightOfAStepIsTheMeanOfItsEnds) {
+TEST(SensorNoise, NoiseRateOfAStepFollowsItsMeanLight) {
   SensorOptions options = IdealSensor(9.0, 9.0);
   options.shot_noise_hz = 4.0;
   Show show(50, 50, options, 11);
@@ -86,7 +86,7 @@ TEST(SensorNoise, LightOfAStepIsTheMeanOfItsEnds) {
   EXPECT_NEAR(static_cast<double>(show.events.size()), expected, 3.0 * std::sqrt(expected));
 }
 
-TEST(SensorNoise, ShotNoiseComesAsOftenBetweenOtherEvents) {
+TEST(SensorNoise, ShotNoiseIsIndependentOfOtherEvents) {
   SensorOptions options = IdealSensor(0.3, 0.2);
   options.leak_hz = 20.0;
   options.shot_noise_hz = 4.0;
@@ -106,7 +106,7 @@ TEST(SensorNoise, ShotNoiseComesAsOftenBetweenOtherEvents) {
   EXPECT_LT(close, 50 * 49 / 10);
 }
 
-TEST(SensorNoise, HotAndDeadPixelsAreAsManyAsAskedFor) {
+TEST(SensorNoise, HotAndDeadPixelsHaveTheirRatios) {
   SensorOptions options = IdealSensor(0.3, 0.2);
   options.hot_pixels = 0.01;
   options.hot_rate_hz = 50.0;

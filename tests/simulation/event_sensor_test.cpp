@@ -1,16 +1,14 @@
-#include "evo/simulation/event_sensor.hpp"
+#include "simulation/sensor/event_sensor.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <tuple>
 
-#include "evo/core/error.hpp"
+#include "evo/core/random.hpp"
 #include "simulation/sensor_stimulus.hpp"
 
-// Without noise: the events against theory.
+// Noise-free events against closed forms.
 
 namespace evo::simulation {
 namespace {
@@ -24,7 +22,7 @@ using test::Show;
 constexpr TimeNs kMs = 1'000'000;
 constexpr TimeNs kUs = 1'000;
 
-TEST(EventSensor, RampCrossesTheThresholdsWhenTheClosedFormSays) {
+TEST(EventSensor, RampCrossesTheThresholdsAtTheClosedFormsTimes) {
   const SensorOptions options = IdealSensor(0.25, 0.16);
   for (const double slope : {1.3, -1.3}) {
     Show show(1, 1, options);
@@ -39,7 +37,7 @@ TEST(EventSensor, RampCrossesTheThresholdsWhenTheClosedFormSays) {
   }
 }
 
-TEST(EventSensor, MovingEdgeFiresWhereItIs) {
+TEST(EventSensor, MovingEdgeFiresAtItsPosition) {
   // An edge of 4 px width and contrast 1.1 goes over the pixels at 1 px/ms.
   const SensorOptions options = IdealSensor(0.2, 0.2);
   Show show(40, 2, options);
@@ -88,7 +86,7 @@ TEST(EventSensor, StepResponseIsThatOfALowPass) {
   }
 }
 
-TEST(EventSensor, SeesAPeakWithinAStep) {
+TEST(EventSensor, FindsAnExtremumWithinAStep) {
   // y lags behind L that falls: it rises until it meets L, at t* with exp(-w t*) = s / (w C).
   SensorOptions options = IdealSensor(0.3, 5.0);
   options.bandwidth_hz = options.dark_bandwidth_hz = 50.0;
@@ -120,7 +118,7 @@ double Wander(int x, int y, double t) {
   return -1.0 + (1.0 - share) * value(knot) + share * value(knot + 1);
 }
 
-TEST(EventSensor, CutOfTheStepsDoesNotMatter) {
+TEST(EventSensor, EventsDoNotDependOnTheSteps) {
   SensorOptions options = IdealSensor(0.3, 0.2);
   options.bandwidth_hz = options.dark_bandwidth_hz = 60.0;
   options.refractory_s = 0.0003;
@@ -157,7 +155,7 @@ std::vector<double> MeasureThresholds(const SensorOptions& options, int size, do
   return thresholds;
 }
 
-TEST(EventSensor, IntegratedEventsGiveBackTheLogChange) {
+TEST(EventSensor, IntegratedEventsEqualTheLogChange) {
   SensorOptions options = IdealSensor(0.3, 0.2);
   options.threshold_spread = 0.03;
   constexpr int kSize = 24;
@@ -185,7 +183,7 @@ TEST(EventSensor, IntegratedEventsGiveBackTheLogChange) {
   EXPECT_NEAR(std::sqrt(variance), 0.03, 0.003);
 }
 
-TEST(EventSensor, BlindPixelStartsAgainFromWhatItSees) {
+TEST(EventSensor, ResetsAtTheEndOfTheRefractoryPeriod) {
   SensorOptions options = IdealSensor(0.2, 0.2);
   options.refractory_s = 0.013;
   Show show(1, 1, options);
@@ -196,108 +194,13 @@ TEST(EventSensor, BlindPixelStartsAgainFromWhatItSees) {
   }
 }
 
-TEST(EventSensor, SymmetricStimulusGivesPolaritiesAsTheThresholdsAre) {
+TEST(EventSensor, SymmetricStimulusGivesTheThresholdsRatioOfPolarities) {
   const SensorOptions options = IdealSensor(0.3, 0.1);
   Show show(4, 4, options);
   show.Run(0, 5000 * kMs, kMs, [&](int x, int y, double t) {
     return RadianceOfLog(-1.0 + 1.5 * std::sin(2.0 * std::numbers::pi * 2.0 * t + x + 4 * y), options);
   });
   EXPECT_NEAR(static_cast<double>(CountOf(show.events, -1)) / CountOf(show.events, 1), 3.0, 0.05);
-}
-
-using SortedEvents = std::vector<std::tuple<int, int, TimeNs, int>>;
-
-SortedEvents DefaultSensorEvents(std::uint64_t seed, int tile, bool backwards, double readout_row_s = 0.0) {
-  SensorOptions options;
-  options.hot_pixels = options.dead_pixels = 0.01;
-  options.shot_noise_hz = 5.0;
-  options.readout_row_s = readout_row_s;
-  Show show(75, 41, options, seed, tile);
-  if (backwards) std::reverse(show.tiles.begin(), show.tiles.end());
-  show.Run(0, 300 * kMs, 3 * kMs, [](int x, int y, double t) {
-    return static_cast<float>(0.5 + 0.45 * std::sin(0.4 * x + 0.1 * y - 40 * t));
-  });
-  SortedEvents sorted;
-  const events::EventColumns& e = show.events;
-  for (std::size_t i = 0; i < e.size(); ++i) sorted.emplace_back(e.y[i], e.x[i], e.t[i], e.polarity[i]);
-  // Stable by pixel only: the order in time within a pixel is the sensor's.
-  std::ranges::stable_sort(sorted, {}, [](const auto& v) { return std::pair(std::get<0>(v), std::get<1>(v)); });
-  return sorted;
-}
-
-TEST(EventSensor, SizeAndOrderOfTheTilesDoNotMatter) {
-  const SortedEvents expected = DefaultSensorEvents(3, 75, false);
-  ASSERT_GT(expected.size(), 10'000U);
-  EXPECT_EQ(DefaultSensorEvents(3, 75, false), expected);
-  EXPECT_EQ(DefaultSensorEvents(3, 32, false), expected);
-  EXPECT_EQ(DefaultSensorEvents(3, 7, true), expected);
-  EXPECT_EQ(DefaultSensorEvents(3, 1, true), expected);
-  EXPECT_NE(DefaultSensorEvents(4, 75, false), expected);
-}
-
-TEST(EventSensor, StampsAreWholeMicrosecondsInOrder) {
-  for (const double readout : {0.0, 0.0013}) {
-    const SortedEvents events = DefaultSensorEvents(3, 32, false, readout);
-    for (std::size_t i = 0; i < events.size(); ++i) {
-      const auto [y, x, t, sign] = events[i];
-      ASSERT_EQ(t % kUs, 0);
-      ASSERT_GE(t, 0);
-      ASSERT_LE(t, 300 * kMs + FromSeconds(readout));
-      if (i == 0 || std::get<0>(events[i - 1]) != y || std::get<1>(events[i - 1]) != x) continue;
-      ASSERT_LE(std::get<2>(events[i - 1]), t);
-    }
-  }
-}
-
-TEST(EventSensor, RowsAreStampedWhenTheyAreRead) {
-  const SortedEvents at_once = DefaultSensorEvents(3, 32, false);
-  const SortedEvents read = DefaultSensorEvents(3, 32, false, 0.001);
-  ASSERT_EQ(read.size(), at_once.size());
-  std::map<int, TimeNs> phase;
-  double mean_delay_us = 0.0;
-  for (std::size_t i = 0; i < read.size(); ++i) {
-    const auto [y, x, t, sign] = read[i];
-    const TimeNs delay = t - std::get<2>(at_once[i]);
-    EXPECT_GE(delay, 0);
-    EXPECT_LE(delay, kMs);
-    EXPECT_EQ(phase.try_emplace(y, t % kMs).first->second, t % kMs) << "row " << y;
-    mean_delay_us += ToSeconds(delay) * 1e6 / static_cast<double>(read.size());
-  }
-  EXPECT_NEAR(mean_delay_us, 500.0, 30.0);
-}
-
-TEST(EventSensor, BadInputIsAnError) {
-  const SensorOptions options;
-  EXPECT_THROW(EventSensor(0, 10, options, 1), Error);
-  EXPECT_THROW(EventSensor(10, 70'000, options, 1), Error);
-  EventSensor sensor(4, 2, options, 1);
-  events::EventColumns events;
-  const Tile tile{0, 0, 4, 2};
-  const std::vector<float> fine(8, 0.5F);
-  sensor.Advance(tile, 0, fine, &events);
-  EXPECT_THROW(sensor.Advance(tile, 0, fine, &events), Error);
-  EXPECT_THROW(sensor.Advance(tile, -5, fine, &events), Error);
-  EXPECT_THROW(sensor.Advance({1, 0, 4, 2}, 5, fine, &events), Error);
-  EXPECT_THROW(sensor.Advance({0, -1, 4, 2}, 5, fine, &events), Error);
-  EXPECT_THROW(sensor.Advance(tile, 5, std::vector<float>(7, 0.5F), &events), Error);
-  for (const float bad : {-0.1F, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
-    std::vector<float> radiance = fine;
-    radiance[5] = bad;
-    EXPECT_THROW(sensor.Advance(tile, 5, radiance, &events), Error) << bad;
-  }
-  EXPECT_NO_THROW(sensor.Advance(tile, 5, std::vector<float>(8, 0.0F), &events));
-}
-
-TEST(EventSensor, OptionsHaveRanges) {
-  SensorOptions options;
-  Parameters parameters;
-  Register(parameters, options);
-  parameters.Set("sensor.threshold_on=0.4");
-  EXPECT_EQ(options.threshold_on, 0.4);
-  for (const char* bad : {"sensor.threshold_on=0", "sensor.threshold_off=-0.1", "sensor.refractory_s=-1",
-                          "sensor.dead_pixels=1.5", "sensor.dark_radiance=0", "sensor.leak_hz=nan"}) {
-    EXPECT_THROW(parameters.Set(bad), Error) << bad;
-  }
 }
 
 }  // namespace

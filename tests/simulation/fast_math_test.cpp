@@ -1,4 +1,4 @@
-#include "simulation/render/fast_math.hpp"
+#include "simulation/fast_math.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,6 +17,12 @@ TEST(FastMath, LogIsThatOfTheLibrary) {
   EXPECT_EQ(FastLog(1.0F), 0.0F);
   EXPECT_NEAR(FastLog(1e-37F), std::log(1e-37), 1e-5);
   EXPECT_NEAR(FastLog(3e38F), std::log(3e38), 1e-5);
+}
+
+TEST(FastMath, Log2IsCloseAndContinuous) {
+  for (float x = 1e-6F; x < 1e6F; x *= 1.003F) EXPECT_NEAR(FastLog2(x), std::log2(x), 0.011F);
+  EXPECT_NEAR(FastLog2(std::nextafter(2.0F, 0.0F)), 1.0F, 1e-5F);
+  EXPECT_NEAR(FastLog2(2.0F), 1.0F, 1e-6F);
 }
 
 TEST(FastMath, OneMinusExpIsThatOfTheLibrary) {

@@ -5,7 +5,7 @@
 
 #include "evo/core/random.hpp"
 #include "evo/geometry/known_cameras.hpp"
-#include "evo/simulation/renderer.hpp"
+#include "simulation/render/renderer.hpp"
 
 namespace evo::simulation {
 
@@ -65,18 +65,18 @@ inline Scene RandomScene(int surfaces, std::uint64_t seed) {
   return scene;
 }
 
-inline Renderer::Visible All(const Scene& scene) {
-  Renderer::Visible all;
+inline Renderer::VisibleSet All(const Scene& scene) {
+  Renderer::VisibleSet all;
   for (int i = 0; i < static_cast<int>(scene.surfaces.size()); ++i) all.surfaces.push_back(i);
   return all;
 }
 
-inline Tile Whole(const geometry::Camera& camera) { return {0, 0, camera.width(), camera.height()}; }
+inline Tile WholeImage(const geometry::Camera& camera) { return {0, 0, camera.width(), camera.height()}; }
 
 inline std::vector<float> RenderAll(const Scene& scene, const geometry::Camera& camera, int samples, TimeNs t = 0,
                                     const geometry::SE3& T_world_cam = geometry::SE3()) {
   Renderer::Radiance radiance;
-  Renderer(scene, camera, samples).Render(Whole(camera), All(scene), t, T_world_cam, &radiance);
+  Renderer(scene, camera, samples).Render(WholeImage(camera), All(scene), t, T_world_cam, &radiance);
   std::vector<float> image = radiance.steady;
   const double flicker = Flicker(scene.lighting, t);
   for (std::size_t i = 0; i < image.size(); ++i) image[i] += static_cast<float>(flicker) * radiance.lamps[i];
@@ -87,7 +87,7 @@ inline std::vector<float> DepthOfAll(const Scene& scene, const geometry::Camera&
                                      const geometry::SE3& T_world_cam = geometry::SE3()) {
   std::vector<float> image(static_cast<std::size_t>(camera.width()) * static_cast<std::size_t>(camera.height()));
   std::vector<std::uint8_t> moving(image.size());
-  Renderer(scene, camera, 1).Depth(Whole(camera), All(scene), t, T_world_cam, image, moving);
+  Renderer(scene, camera, 1).RenderDepth(WholeImage(camera), All(scene), t, T_world_cam, image, moving);
   return image;
 }
 

@@ -1,4 +1,4 @@
-#include "evo/simulation/renderer.hpp"
+#include "simulation/render/renderer.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,14 +15,14 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-class RendererOf : public testing::TestWithParam<geometry::Distortion> {
+class RendererWith : public testing::TestWithParam<geometry::Distortion> {
  protected:
   geometry::Camera camera() const { return GetParam() == geometry::Distortion::kRadTan ? Davis240() : Davis346(); }
 };
-INSTANTIATE_TEST_SUITE_P(BothLenses, RendererOf,
+INSTANTIATE_TEST_SUITE_P(BothLenses, RendererWith,
                          testing::Values(geometry::Distortion::kRadTan, geometry::Distortion::kEquidistant));
 
-TEST_P(RendererOf, DepthOfAPlaneIsExact) {
+TEST_P(RendererWith, DepthOfAPlaneIsExact) {
   const geometry::Camera lens = camera();
   Scene scene = Empty();
   Surface ground;  // level, 1.5 m below
@@ -48,7 +48,7 @@ TEST_P(RendererOf, DepthOfAPlaneIsExact) {
   EXPECT_GT(seen, lens.width() * lens.height() / 3);
 }
 
-TEST_P(RendererOf, AgreesWithOneRayAtATime) {
+TEST_P(RendererWith, AgreesWithOneRayAtATime) {
   const geometry::Camera lens = camera();
   for (int seed = 0; seed < 4; ++seed) {
     const Scene scene = RandomScene(60, seed);
@@ -75,7 +75,7 @@ double EdgeAt(const std::vector<double>& line, double bright, double dark) {
   return sum - 0.5;
 }
 
-TEST_P(RendererOf, CornersAreWhereTheCameraProjectsThem) {
+TEST_P(RendererWith, CornersAreWhereTheCameraProjectsThem) {
   const geometry::Camera lens = camera();
   for (const int samples : {2, 8}) {
     double mean_error = 0.0;
@@ -119,7 +119,7 @@ TEST_P(RendererOf, CornersAreWhereTheCameraProjectsThem) {
   }
 }
 
-TEST_P(RendererOf, DoesNotDependOnTheTiles) {
+TEST_P(RendererWith, DoesNotDependOnTheTiles) {
   const geometry::Camera lens = camera();
   const Scene scene = RandomScene(40, 9);
   const auto whole = RenderAll(scene, lens, 2);
@@ -161,7 +161,7 @@ TEST(Renderer, AFarCheckerboardFadesToItsMean) {
   }
 }
 
-TEST(Renderer, TexturesLieWhereTheyAreSaidTo) {
+TEST(Renderer, TexturesFollowTheirCoordinates) {
   std::vector<Texel> half(2, {.reflectance = 0.2F});
   half[1].reflectance = 0.8F;
   Scene scene = Empty();
@@ -181,7 +181,7 @@ TEST(Renderer, TexturesLieWhereTheyAreSaidTo) {
   EXPECT_NEAR(at(0.0), 0.5, 0.01);
 }
 
-TEST(Renderer, HolesAreLookedThroughFromNearToFar) {
+TEST(Renderer, HolesAreCompositedFromFrontToBack) {
   Scene scene = Empty();
   scene.textures.push_back(Plain(0.8F, 0.25F));
   scene.textures.push_back(Plain(0.1F, 0.6F));
@@ -266,7 +266,7 @@ TEST(Renderer, APixelWithoutARayIsBlack) {
   EXPECT_NEAR(DepthOfAll(scene, lens)[110 * 240 + 132], 3.0, 1e-5);
 }
 
-TEST(Renderer, RefusesWhatItCannotRender) {
+TEST(Renderer, RejectsBadSamplesAndBadSurfaces) {
   const geometry::Camera lens = Davis240();
   Scene scene = Empty();
   EXPECT_THROW(Renderer(scene, lens, 0), Error);

@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
+#include "evo/core/parallel.hpp"
+#include "evo/core/random.hpp"
 #include "evo/simulation/simulate.hpp"
 #include "simulation/render_scene.hpp"
 #include "simulation/sensor_stimulus.hpp"
@@ -29,11 +32,14 @@ SimulationOptions Fine() {
   return options;
 }
 
-events::EventColumns EventsOf(const Scene& scene, const geometry::Camera& camera, const CameraMotion& motion,
-                              TimeNs duration, const SensorOptions& sensor, const SimulationOptions& options) {
+events::EventColumns SimulateEvents(const SimulatedRun& run, const SensorOptions& sensor,
+                                    const SimulationOptions& simulation) {
+  SceneOptions options;
+  options.sensor = sensor;
+  options.simulation = simulation;
   ThreadPool pool(2);
   EventsOnly sink;
-  Simulate(scene, camera, motion, 0, duration, sensor, options, 1, &pool, nullptr, &sink);
+  Simulate(run, options, &pool, &sink);
   return sink.events;
 }
 
@@ -51,7 +57,7 @@ class MovingEdge : public ::testing::TestWithParam<std::pair<float, float>> {
     scene.textures = {Plain(left), Plain(right)};
     scene.surfaces = {Facing(-9.0, kEdge, -9.0, 9.0, kDepth, 0), Facing(kEdge, 9.0, -9.0, 9.0, kDepth, 1)};
     options.samples = 8;  // an edge that crosses a pixel changes it in 64 steps
-    options.largest_step_px = 0.05;
+    options.max_step_px = 0.05;
   }
 
   /// When the edge has so far crossed pixel column x, of which `share` shows the right half then, s.
@@ -63,13 +69,13 @@ class MovingEdge : public ::testing::TestWithParam<std::pair<float, float>> {
   Scene scene = Empty();
   const geometry::Camera camera{
       geometry::Calibration{geometry::Distortion::kRadTan, 24, 12, kFocal, kFocal, 8.0, 6.0, {}}};
-  const CameraMotion motion = [](TimeNs t) {
+  const PoseFunction motion = [](TimeNs t) {
     return geometry::SE3(Eigen::Quaterniond::Identity(), {kSpeed * ToSeconds(t), 0.0, 0.0});
   };
   SimulationOptions options = Fine();
 };
 
-TEST_P(MovingEdge, FiresAtTheTimesAndAsOftenAsTheClosedFormSays) {
+TEST_P(MovingEdge, FiresAtTheClosedFormsTimesAndCounts) {
   const double before = GetParam().first;
   const double after = GetParam().second;
   const SensorOptions sensor = IdealSensor(0.3, 0.2);
@@ -77,7 +83,8 @@ TEST_P(MovingEdge, FiresAtTheTimesAndAsOftenAsTheClosedFormSays) {
   const double change = std::log(after + sensor.dark_radiance) - low;
   const int sign = change > 0.0 ? 1 : -1;
   const double threshold = change > 0.0 ? sensor.threshold_on : sensor.threshold_off;
-  const auto pixels = ByPixel(EventsOf(scene, camera, motion, FromSeconds(0.8), sensor, options));
+  const auto pixels =
+      ByPixel(SimulateEvents({std::make_shared<Scene>(scene), camera, motion, FromSeconds(0.8)}, sensor, options));
   const int count = static_cast<int>(std::abs(change) / threshold);
   ASSERT_GE(count, 3);
   for (int x = 0; x <= 20; ++x) {  // the columns that the edge crosses whole
@@ -101,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(BrighterAndDarker, MovingEdge,
 
 /// Walls and moving things all round, a camera that moves and turns: for every pixel the events add up to the change of
 /// what the renderer shows there, but for less than a threshold.
-TEST(SensorChain, IntegratedEventsGiveBackTheLogChangeOfTheFrames) {
+TEST(SensorChain, IntegratedEventsEqualTheLogChangeOfTheFrames) {
   const Scene scene = [] {
     Scene random = RandomScene(60, 11);
     Random grey(4);
@@ -119,13 +126,14 @@ TEST(SensorChain, IntegratedEventsGiveBackTheLogChangeOfTheFrames) {
   }();
   const geometry::Camera camera(
       {geometry::Distortion::kRadTan, 48, 36, 40.0, 40.0, 24.0, 18.0, {-0.2, 0.03, 0.001, -0.001, 0.0}});
-  const CameraMotion motion = [](TimeNs t) {
+  const PoseFunction motion = [](TimeNs t) {
     const double s = ToSeconds(t);
     return geometry::SE3(geometry::so3::Exp({0.6 * s, -s, 0.8 * s}), {0.5 * s, 0.3 * s, 2.0 * s});
   };
   const TimeNs duration = FromSeconds(0.25);
   const SensorOptions sensor = IdealSensor(0.11, 0.07);
-  const events::EventColumns events = EventsOf(scene, camera, motion, duration, sensor, Fine());
+  const events::EventColumns events =
+      SimulateEvents({std::make_shared<Scene>(scene), camera, motion, duration}, sensor, Fine());
   EXPECT_GT(events.size(), 10'000u);
 
   std::vector<double> sum(48 * 36);

@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "evo/simulation/event_sensor.hpp"
+#include "simulation/sensor/event_sensor.hpp"
 
 namespace evo::simulation::test {
 
-/// Neither noise nor mismatch, blindness or low-pass: events where L crosses the thresholds.
+/// No noise, threshold mismatch, refractory period or low-pass: events where L crosses the thresholds.
 inline SensorOptions IdealSensor(double on, double off) {
   SensorOptions options;
   options.threshold_on = on;

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <tuple>
 #include <utility>
 
+#include "evo/core/parallel.hpp"
 #include "evo/core/random.hpp"
+#include "simulation/world/scene.hpp"
 
 namespace evo::simulation {
 namespace {
@@ -73,14 +76,21 @@ SensorOptions Noiseless() {
 class SimulateTest : public ::testing::Test {
  protected:
   SimulationCounts Run(const SensorOptions& sensor, Record* record, int threads = 2) const {
+    return Run({std::make_shared<Scene>(scene), camera, motion, kDuration}, sensor, record, threads);
+  }
+  SimulationCounts Run(const SimulatedRun& run, const SensorOptions& sensor, Record* record, int threads = 2) const {
+    SceneOptions scene_options;
+    scene_options.seed = 3;
+    scene_options.sensor = sensor;
+    scene_options.simulation = options;
     ThreadPool pool(threads);
-    return Simulate(scene, camera, motion, 0, kDuration, sensor, options, 3, &pool, nullptr, record);
+    return Simulate(run, scene_options, &pool, record);
   }
 
   Scene scene = MakeWall();
   const geometry::Camera camera{geometry::Calibration{
       geometry::Distortion::kRadTan, 50, 40, 60.0, 60.0, 24.0, 20.0, {-0.1, 0.02, 0.0, 0.0, 0.0}}};
-  CameraMotion motion = [](TimeNs t) {
+  PoseFunction motion = [](TimeNs t) {
     return geometry::SE3(Eigen::Quaterniond::Identity(), {kSpeed * ToSeconds(t), 0.0, 0.0});
   };
   SimulationOptions options;
@@ -127,18 +137,18 @@ TEST_F(SimulateTest, DeliversInOrderOfTimeThenRowThenColumn) {
   }
 }
 
-TEST_F(SimulateTest, ACameraAtRestSeesNothingButNoise) {
+TEST_F(SimulateTest, ACameraAtRestHasNoEventsWithoutNoise) {
   motion = [](TimeNs) { return geometry::SE3(); };
   Record record;
   const SimulationCounts counts = Run(Noiseless(), &record);
   EXPECT_EQ(record.events.size(), 0u);
-  EXPECT_EQ(counts.pixel_renders, 50u * 40u * 20u);  // every longest_step_s
+  EXPECT_EQ(counts.pixel_renders, 50u * 40u * 20u);  // every max_step_s
 }
 
 TEST_F(SimulateTest, RendersAsOftenAsTheMotionNeeds) {
   Record coarse;
   const SimulationCounts counts = Run(Noiseless(), &coarse);
-  options.largest_step_px = 0.125;
+  options.max_step_px = 0.125;
   Record fine;
   const SimulationCounts more = Run(Noiseless(), &fine);
   // 60 px * 0.5 m/s / 2 m = 15 px/s: every 5 ms that is under a tenth of a pixel.
@@ -179,7 +189,7 @@ TEST_F(SimulateTest, LampsFlickerInFullBetweenFewRenders) {
   }
 }
 
-TEST_F(SimulateTest, FewRendersUnderLampsShowWhatManyDo) {
+TEST_F(SimulateTest, FewRendersUnderLampsGiveTheEventsOfMany) {
   scene.lighting = LampsAlone();
   motion = [](TimeNs t) {
     return geometry::SE3(Eigen::Quaterniond::Identity(), {3.0 * ToSeconds(t), 0.0, 0.0});
@@ -188,7 +198,7 @@ TEST_F(SimulateTest, FewRendersUnderLampsShowWhatManyDo) {
   sensor.threshold_on = 0.2;
   Record few;
   const SimulationCounts counts = Run(sensor, &few);
-  options.longest_step_s = 1.0 / 960.0;
+  options.max_step_s = 1.0 / 960.0;
   Record many;
   EXPECT_GT(Run(sensor, &many).pixel_renders, 4 * counts.pixel_renders);
   std::map<std::pair<int, int>, std::vector<TimeNs>> stamps;
@@ -196,15 +206,15 @@ TEST_F(SimulateTest, FewRendersUnderLampsShowWhatManyDo) {
     stamps[{many.events.x[i], many.events.y[i]}].push_back(many.events.t[i]);
   }
   // Each event has one of the reference at its pixel within a tenth of the flicker's period.
-  std::size_t alike = 0;
+  std::size_t matched = 0;
   for (std::size_t i = 0; i < few.events.size(); ++i) {
     const auto& there = stamps[{few.events.x[i], few.events.y[i]}];
     const auto at = std::ranges::lower_bound(there, few.events.t[i] - 800'000);
-    if (at != there.end() && *at < few.events.t[i] + 800'000) ++alike;
+    if (at != there.end() && *at < few.events.t[i] + 800'000) ++matched;
   }
   EXPECT_NEAR(static_cast<double>(few.events.size()), static_cast<double>(many.events.size()),
               0.005 * static_cast<double>(many.events.size()));
-  EXPECT_GT(static_cast<double>(alike), 0.98 * static_cast<double>(few.events.size()));
+  EXPECT_GT(static_cast<double>(matched), 0.98 * static_cast<double>(few.events.size()));
 }
 
 TEST_F(SimulateTest, DepthAndPosesAgree) {
@@ -229,15 +239,15 @@ TEST_F(SimulateTest, DepthAndPosesAgree) {
   }
 }
 
-TEST_F(SimulateTest, ALeadInIsWhatTheCameraSawBefore) {
+TEST_F(SimulateTest, ALeadInSetsThePixelsAsTheWholeRunDoes) {
   constexpr TimeNs kLeadIn = 40'000'000;
-  ThreadPool pool(2);
   SensorOptions sensor;
   sensor.bandwidth_hz = 30.0;
   Record whole, part;
-  Simulate(scene, camera, motion, 0, kLeadIn + kDuration, sensor, options, 3, &pool, nullptr, &whole);
-  const CameraMotion later = [&](TimeNs t) { return motion(t + kLeadIn); };
-  Simulate(scene, camera, later, kLeadIn, kDuration, sensor, options, 3, &pool, nullptr, &part);
+  const SimulatedRun run{std::make_shared<Scene>(scene), camera, motion, kLeadIn + kDuration};
+  Run(run, sensor, &whole);
+  options.lead_in_s = ToSeconds(kLeadIn);
+  Run(PartOf(run, kLeadIn, kDuration), sensor, &part);
   const auto first =
       static_cast<std::size_t>(std::ranges::lower_bound(whole.events.t, kLeadIn) - whole.events.t.begin());
   ASSERT_GT(first, 100u);
@@ -255,9 +265,8 @@ TEST_F(SimulateTest, ImagesShowWhatTheMotionPredicts) {
   options.image_hz = 15.0;  // 0 and 1/15 s: one pixel apart
   options.samples = 4;
   const geometry::Calibration ideal{geometry::Distortion::kRadTan, 50, 40, 60.0, 60.0, 24.0, 20.0, {}};
-  ThreadPool pool(2);
   Record record;
-  Simulate(scene, geometry::Camera(ideal), motion, 0, kDuration, Noiseless(), options, 3, &pool, nullptr, &record);
+  Run({std::make_shared<Scene>(scene), geometry::Camera(ideal), motion, kDuration}, Noiseless(), &record);
   ASSERT_EQ(record.images.size(), 2u);
   int largest = 0;
   for (std::size_t y = 0; y < 40; ++y) {

@@ -1,4 +1,4 @@
-#include "evo/simulation/texture.hpp"
+#include "simulation/world/texture.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,19 +20,19 @@ std::vector<Texel> Noise(int count, bool holes) {
   return texels;
 }
 
-TEST(Texture, GivesItsTexelsAtTheirCentresAndRepeats) {
+TEST(Texture, InterpolatesBetweenTexelCentresAndRepeats) {
   const auto texels = Noise(8 * 4, false);
   const Texture texture(8, 4, texels);
   for (int y = 0; y < 4; ++y) {
     for (int x = 0; x < 8; ++x) {
       const float expected = texels[y * 8 + x].reflectance;
-      EXPECT_NEAR(texture.At(x + 0.5, y + 0.5, 0.0).reflectance, expected, 1e-6);
-      EXPECT_NEAR(texture.At(x + 0.5 - 80.0, y + 0.5 + 40.0, 0.5).reflectance, expected, 1e-6);
+      EXPECT_NEAR(texture.Lookup(x + 0.5, y + 0.5, 0.0).reflectance, expected, 1e-6);
+      EXPECT_NEAR(texture.Lookup(x + 0.5 - 80.0, y + 0.5 + 40.0, 0.5).reflectance, expected, 1e-6);
     }
   }
   const float between =
       0.25F * (texels[0].reflectance + texels[1].reflectance + texels[8].reflectance + texels[9].reflectance);
-  EXPECT_NEAR(texture.At(1.0, 1.0, 0.0).reflectance, between, 1e-6);
+  EXPECT_NEAR(texture.Lookup(1.0, 1.0, 0.0).reflectance, between, 1e-6);
 }
 
 TEST(Texture, AveragesOverItsFootprint) {
@@ -40,49 +40,43 @@ TEST(Texture, AveragesOverItsFootprint) {
   const Texture texture(64, 64, texels);
   float mean = 0.0F;
   for (const Texel& texel : texels) mean += texel.reflectance / 4096.0F;
-  EXPECT_NEAR(texture.At(3.3, 60.1, 64.0).reflectance, mean, 1e-4);
-  EXPECT_NEAR(texture.At(3.3, 60.1, 1e6).reflectance, mean, 1e-4);
+  EXPECT_NEAR(texture.Lookup(3.3, 60.1, 64.0).reflectance, mean, 1e-4);
+  EXPECT_NEAR(texture.Lookup(3.3, 60.1, 1e6).reflectance, mean, 1e-4);
   float block = 0.0F;  // texels 8..11 by 20..23 are one of level 2
   for (int y = 20; y < 24; ++y) {
     for (int x = 8; x < 12; ++x) block += texels[y * 64 + x].reflectance / 16.0F;
   }
-  EXPECT_NEAR(texture.At(10.0, 22.0, 4.0).reflectance, block, 1e-5);
+  EXPECT_NEAR(texture.Lookup(10.0, 22.0, 4.0).reflectance, block, 1e-5);
 }
 
 TEST(Texture, IsContinuousInPlaceAndFootprint) {
   const Texture texture(32, 16, Noise(32 * 16, true));
-  Texel last = texture.At(-3.0, 2.0, 0.1);
+  Texel last = texture.Lookup(-3.0, 2.0, 0.1);
   for (int i = 1; i < 40'000; ++i) {
     const double s = i / 40'000.0;
-    const Texel texel = texture.At(-3.0 + 40.0 * s, 2.0 - 20.0 * s, 0.1 * std::pow(500.0, s));
+    const Texel texel = texture.Lookup(-3.0 + 40.0 * s, 2.0 - 20.0 * s, 0.1 * std::pow(500.0, s));
     ASSERT_NEAR(texel.coverage, last.coverage, 0.02) << i;
     last = texel;
   }
 }
 
-TEST(Texture, HolesDoNotColourWhatIsAroundThem) {
+TEST(Texture, HolesDoNotAffectTheirSurroundings) {
   std::vector<Texel> texels(16 * 16, {.reflectance = 0.9F, .coverage = 0.0F});
   for (int i = 0; i < 256; i += 2) texels[i] = {.reflectance = 0.2F, .coverage = 1.0F};
   const Texture texture(16, 16, texels);
   EXPECT_FALSE(texture.solid());
   for (const double footprint : {0.0, 1.3, 5.0, 100.0}) {
-    const Texel texel = texture.At(4.9, 7.2, footprint);
+    const Texel texel = texture.Lookup(4.9, 7.2, footprint);
     EXPECT_NEAR(texel.reflectance, 0.2, 1e-5) << footprint;
     EXPECT_GT(texel.coverage, 0.0F);
   }
-  EXPECT_NEAR(texture.At(4.9, 7.2, 100.0).coverage, 0.5, 1e-6);
+  EXPECT_NEAR(texture.Lookup(4.9, 7.2, 100.0).coverage, 0.5, 1e-6);
 }
 
-TEST(Texture, RefusesOddSizes) {
+TEST(Texture, RejectsSizesThatAreNoPowersOfTwo) {
   EXPECT_THROW(Texture(3, 4, std::vector<Texel>(12)), Error);
   EXPECT_THROW(Texture(4, 4, std::vector<Texel>(15)), Error);
   EXPECT_THROW(Texture(0, 4, {}), Error);
-}
-
-TEST(Texture, QuickLog2IsCloseAndContinuous) {
-  for (float x = 1e-6F; x < 1e6F; x *= 1.003F) EXPECT_NEAR(QuickLog2(x), std::log2(x), 0.011F);
-  EXPECT_NEAR(QuickLog2(std::nextafter(2.0F, 0.0F)), 1.0F, 1e-5F);
-  EXPECT_NEAR(QuickLog2(2.0F), 1.0F, 1e-6F);
 }
 
 }  // namespace

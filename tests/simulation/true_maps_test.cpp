@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "evo/core/parallel.hpp"
 #include "simulation/render_scene.hpp"
 
 namespace evo::simulation {
@@ -12,11 +13,11 @@ namespace {
 const geometry::SE3 kPose(geometry::so3::Exp({0.05, -0.1, 0.2}), {0.3, -0.2, 0.5});
 constexpr TimeNs kTime = 40'000'000;
 
-TEST(DepthCamera, SeesWhatEachRayMeets) {
+TEST(DepthCamera, AgreesWithOneRayAtATime) {
   const Scene scene = RandomScene(150, 6);
   for (const geometry::Camera& camera : {Davis346(), geometry::Camera(geometry::Rectified(Davis346().calibration()))}) {
     ThreadPool pool(2);
-    const events::DepthMap map = DepthCamera(scene, camera, &pool).At(kTime, kPose);
+    const events::DepthMap map = DepthCamera(scene, camera, &pool).Render(kTime, kPose);
     ASSERT_EQ(map.width, 346);
     ASSERT_EQ(map.height, 260);
     int seen = 0, moving = 0;
@@ -44,8 +45,8 @@ TEST(DepthCamera, IsTheSameForAnyNumberOfThreads) {
   const geometry::Camera camera = Davis240();
   ThreadPool one(1);
   ThreadPool three(3);
-  const events::DepthMap map = DepthCamera(scene, camera, &one).At(kTime, kPose);
-  const events::DepthMap same = DepthCamera(scene, camera, &three).At(kTime, kPose);
+  const events::DepthMap map = DepthCamera(scene, camera, &one).Render(kTime, kPose);
+  const events::DepthMap same = DepthCamera(scene, camera, &three).Render(kTime, kPose);
   EXPECT_EQ(map.moving, same.moving);
   for (std::size_t i = 0; i < map.depth.size(); ++i) {
     ASSERT_TRUE(map.depth[i] == same.depth[i] || (std::isnan(map.depth[i]) && std::isnan(same.depth[i]))) << i;
@@ -84,7 +85,7 @@ TEST_F(StaticFlowTest, OfAStepForwardExpandsFromTheAxis) {
   EXPECT_NEAR(Down(map, 16, 1), -2.0, 1e-9);
 }
 
-TEST_F(StaticFlowTest, OfATurnDoesNotAskForDepth) {
+TEST_F(StaticFlowTest, OfARotationDoesNotDependOnDepth) {
   depth.depth[0] = 400.0;
   const geometry::SE3 turn(geometry::so3::Exp({0.0, 0.0, 0.01}), Eigen::Vector3d::Zero());
   const events::FlowMap map = Flow(turn);
@@ -93,7 +94,7 @@ TEST_F(StaticFlowTest, OfATurnDoesNotAskForDepth) {
   EXPECT_NEAR(Down(map, 0, 0), place.y(), 1e-9);
 }
 
-TEST_F(StaticFlowTest, IsUnknownWhereTheDepthIsOrThePointIsPassed) {
+TEST_F(StaticFlowTest, IsUnknownForUnknownDepthAndForPointsBehindTheCamera) {
   depth.depth[0] = std::nan("");
   depth.depth[1] = 0.5;
   const events::FlowMap map = Flow(geometry::SE3(Eigen::Quaterniond::Identity(), {0.0, 0.0, -1.0}));

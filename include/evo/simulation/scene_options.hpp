@@ -2,26 +2,114 @@
 
 #include <string>
 
-#include "evo/core/parameters.hpp"
-#include "evo/geometry/camera.hpp"
-#include "evo/simulation/event_sensor.hpp"
-#include "evo/simulation/motion.hpp"
-#include "evo/simulation/scene.hpp"
-#include "evo/simulation/simulate.hpp"
-#include "evo/simulation/world.hpp"
+namespace evo {
+class Parameters;
+}
 
 namespace evo::simulation {
 
-/// All that a scene file may say.
+// The options of a scene file. Register gives each field's unit, range and meaning.
+
+/// Names street.*.
+struct StreetOptions {
+  double road_width_m = 7.0;
+  double parking_width_m = 2.2;
+  double pavement_width_m = 2.0;
+  double house_share = 0.85;
+  double trees_per_100_m = 6.0;
+  double poles_per_100_m = 4.0;
+  double parked_cars_per_100_m = 6.0;
+  double oncoming_cars_per_100_m = 0.5;
+  double oncoming_car_speed_m_s = 9.0;
+  int cars_ahead = 0;
+  std::string light = "day";
+  double night_ambient = 0.02;
+  double head_lamps = 12.0;
+  double lamp_flicker_hz = 120.0;
+};
+
+/// Names motion.vehicle.*.
+struct VehicleOptions {
+  double duration_s = 60.0;
+  // Speed.
+  double speed_m_s = 7.5;
+  double acceleration_m_s2 = 1.5;
+  double stop_every_s = 0.0;
+  double stand_s = 2.0;
+  double start_at_rest_s = 1.0;
+  double turn_speed_m_s = 4.0;
+  // Mount of the camera.
+  double camera_height_m = 1.5;
+  double camera_pitch_deg = 0.0;
+  // Vibration.
+  double vibration_deg = 0.05;
+  double vibration_hz = 12.0;
+  // Bumps of the road.
+  std::string bumps_at_s;
+  double bump_pitch_deg = 2.0;
+  double bump_heave_m = 0.06;
+  double bump_roll_deg = 0.7;
+};
+
+/// Names motion.handheld.*.
+struct HandheldOptions {
+  double duration_s = 20.0;
+  double translation_m = 0.3;
+  double rotation_deg = 12.0;
+  double frequency_hz = 0.5;
+};
+
+/// Names motion.slider.*.
+struct SliderOptions {
+  double duration_s = 3.0;
+  double length_m = 0.6;
+};
+
+/// Names sensor.*. The defaults are a DAVIS346 as set up for the MVSEC drives, with about three negative events for
+/// each positive one. They hold for day and night: the light makes the pixels slow and noisy.
+struct SensorOptions {
+  // Contrast thresholds.
+  double threshold_on = 0.65;
+  double threshold_off = 0.18;
+  double threshold_spread = 0.03;
+  // Photoreceptor.
+  double bandwidth_hz = 300.0;
+  double dark_bandwidth_hz = 10.0;
+  double dark_radiance = 0.002;
+  double refractory_s = 0.0005;
+  // Noise.
+  double leak_hz = 0.1;
+  double shot_noise_hz = 0.5;
+  double hot_pixels = 0.0002;
+  double hot_rate_hz = 100.0;
+  double dead_pixels = 0.0002;
+  // Readout.
+  double readout_row_s = 0.0;
+};
+
+/// Names simulation.*.
+struct SimulationOptions {
+  // Rendering.
+  int samples = 2;
+  double max_step_px = 0.5;
+  double max_step_s = 0.005;
+  int tile_px = 16;
+  double lead_in_s = 0.3;
+  // Output.
+  double image_hz = 20.0;
+  double depth_hz = 20.0;
+};
+
+/// Everything that a scene file may set.
 struct SceneOptions {
   int seed = 1;
-  std::string kind = "street";           ///< street, room, slider: what the world is
-  std::string motion = "vehicle";        ///< vehicle, handheld, slider, file: how the camera moves in it
-  std::string motion_file;               ///< TUM text, for motion "file"
-  std::string calibration = "davis346";  ///< or davis240c, or a file that ReadCalibration reads
-  std::string road_shape = "curved";     ///< straight, curved, turns
-  double road_length_m = 0.0;            ///< 0: what the motion needs
-  double road_slope = 0.0;               ///< steepest of the hills
+  std::string kind = "street";
+  std::string calibration = "davis346";
+  std::string motion = "vehicle";
+  std::string motion_file;
+  std::string road_shape = "curved";
+  double road_length_m = 0.0;
+  double road_slope = 0.0;
   StreetOptions street;
   VehicleOptions vehicle;
   HandheldOptions handheld;
@@ -30,27 +118,7 @@ struct SceneOptions {
   SimulationOptions simulation;
 };
 
-/// scene.*, road.* and the parameters of all parts.
+/// Names scene.*, motion.*, road.* and the parameters of all parts.
 void Register(Parameters& parameters, SceneOptions& options);
-
-/// A scene that is ready to be simulated.
-struct SimulatedRun {
-  Scene scene;
-  geometry::Camera camera;
-  CameraMotion motion;
-  TimeNs duration = 0;  ///< of the motion
-  TimeNs before = 0;    ///< the motion is known since so long before time 0
-};
-
-/// Throws Error: kInput for a calibration or motion file that cannot be read, kConfiguration for options that do not
-/// fit together.
-SimulatedRun MakeRun(const SceneOptions& options);
-
-/// `duration` of `run` from `from` on as a run of its own: the same world and poses, time counted from there. Throws
-/// Error(kUsage) if that is nothing or more than `run` has.
-SimulatedRun PartOf(const SimulatedRun& run, TimeNs from, TimeNs duration);
-
-/// `motion` at 0, 1 / hz, 2 / hz, ... and at `duration`.
-geometry::Trajectory Sample(const CameraMotion& motion, TimeNs duration, double hz);
 
 }  // namespace evo::simulation

@@ -2,22 +2,23 @@
 
 #include <vector>
 
-#include "evo/simulation/motion.hpp"
+#include "evo/simulation/scene_options.hpp"
+#include "simulation/world/reference_line.hpp"
 
 namespace evo::simulation {
 
-/// How far a car has come and how fast it is over time: acceleration within its limit, changes of acceleration smooth.
+/// Distance (m) and speed (m/s) of a car over time. The acceleration stays within its limit and is continuous.
 class SpeedProfile {
  public:
-  SpeedProfile(const RoadLine& road, const VehicleOptions& options);
+  SpeedProfile(const ReferenceLine& road, const VehicleOptions& options);
 
-  /// Before the start and after the end the car keeps its speed.
-  double Distance(double t_s) const;
-  double Speed(double t_s) const;
+  /// The car keeps its speed before the start and after the end.
+  double DistanceAt(double t_s) const;
+  double SpeedAt(double t_s) const;
 
  private:
-  /// Speeds at multiples of the step from the first to the last instant that smoothing needs.
-  static std::vector<double> Drive(const RoadLine& road, const VehicleOptions& options, int samples);
+  /// Speeds before smoothing, one a step, from the first to the last instant that the smoothing needs.
+  static std::vector<double> IntegrateSpeeds(const ReferenceLine& road, const VehicleOptions& options, int samples);
 
   std::vector<double> speeds_;
   std::vector<double> distances_;

@@ -1,15 +1,17 @@
-#include "evo/simulation/renderer.hpp"
+#include "simulation/render/renderer.hpp"
+
+#include <fmt/format.h>
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include "evo/core/error.hpp"
-#include "simulation/render/ray_block.hpp"
-#include "simulation/render/surface_view.hpp"
-#include "simulation/world/lights.hpp"
+#include "simulation/fast_math.hpp"
+#include "simulation/render/lights.hpp"
+#include "simulation/render/projected_surface.hpp"
+#include "simulation/render/ray_packet.hpp"
 
 namespace evo::simulation {
 
@@ -17,21 +19,21 @@ using Eigen::Vector2d;
 
 namespace {
 
-constexpr int kMostSamples = 16;  // a pixel's rays must fit into one block
+constexpr int kMaxSamples = 16;  // a pixel's rays must fit into one packet
 
-/// Where the rays of a pixel lie across the columns (or rows) of their grid, in [0, 1), by its places `along` and
-/// `across` an edge between columns (or rows): van der Corput's sequence along it, which no slope of the edge follows.
-double RaysShift(int along, int across) {
+/// Shift of a pixel's rays within the columns (or rows) of their grid, in [0, 1), by the pixel's coordinates along and
+/// across an edge between columns (or rows): van der Corput's sequence along the edge, which no slope of it follows.
+double GridShift(int along, int across) {
   constexpr double kGolden = 0.6180339887498949;
   double shift = kGolden * across;
   for (double digit = 0.5; along > 0; along /= 2, digit /= 2.0) shift += digit * (along % 2);
   return shift - std::floor(shift);
 }
 
-/// Cuts a tile into parts of which each fits into a block of rays.
+/// Cuts a tile into parts whose rays fit into a packet each.
 template <typename Use>
 void ForEachPart(const Tile& tile, int rays_per_pixel, const Use& use) {
-  const int side = static_cast<int>(std::sqrt(RayBlock::kSize / rays_per_pixel));
+  const int side = static_cast<int>(std::sqrt(RayPacket::kSize / rays_per_pixel));
   for (int y = 0; y < tile.height; y += side) {
     for (int x = 0; x < tile.width; x += side) {
       use(Tile{tile.x0 + x, tile.y0 + y, std::min(side, tile.width - x), std::min(side, tile.height - y)});
@@ -39,53 +41,57 @@ void ForEachPart(const Tile& tile, int rays_per_pixel, const Use& use) {
   }
 }
 
-float TextureLevel(const SurfaceView& view, const RayBlock& block, int i, float depth) {
-  return view.level + 1.5F * QuickLog2(depth) + block.level[i];
+float MipLevel(const ProjectedSurface& surface, const RayPacket& packet, int i, float depth) {
+  return surface.mip_level + 1.5F * FastLog2(depth) + packet.log2_spacing[i];
 }
 
-Texture::Sample LookUp(const SurfaceView& view, const RayBlock& block, int i, float depth) {
-  return view.texture->AtLevel(view.uw.At(block.x[i], block.y[i]) * depth, view.vw.At(block.x[i], block.y[i]) * depth,
-                               TextureLevel(view, block, i, depth));
+Texture::Sample LookUpTexture(const ProjectedSurface& surface, const RayPacket& packet, int i, float depth) {
+  return surface.texture->LookupAtLevel(surface.u_over_depth.Evaluate(packet.x[i], packet.y[i]) * depth,
+                                        surface.v_over_depth.Evaluate(packet.x[i], packet.y[i]) * depth,
+                                        MipLevel(surface, packet, i, depth));
 }
 
-/// Radiance that comes along each ray of a block, by the parts of Renderer::Radiance.
-struct AlongRays {
-  std::array<float, RayBlock::kSize> steady;
-  std::array<float, RayBlock::kSize> lamps;
-  bool lit = false;  ///< `lamps` is not all 0
+/// Radiance along each ray of a packet, in the parts of Renderer::Radiance.
+struct PacketRadiance {
+  std::array<float, RayPacket::kSize> steady;
+  std::array<float, RayPacket::kSize> lamps;
+  bool has_lamps = false;  ///< `lamps` is not all 0
 };
 
-void Shade(const std::vector<SurfaceView>& views, const Lights& lights, float sky, RayBlock* block, AlongRays* along) {
-  const RayBox box = block->Bounds();
-  const auto seen = Cull(views, box);
-  std::vector<Lights::OnSurface> shining;
-  along->lit = false;
-  for (const SurfaceView* view : seen) {
+void ShadeRays(const std::vector<ProjectedSurface>& surfaces, const Lights& lights, float sky, RayPacket* packet,
+               PacketRadiance* radiance) {
+  const RayFrustum rays = packet->Frustum();
+  const auto candidates = CullOccluded(surfaces, rays);
+  std::vector<Lights::SurfaceLights> surface_lights;
+  radiance->has_lamps = false;
+  for (const ProjectedSurface* surface : candidates) {
     if (!lights.any()) break;
-    shining.push_back(lights.For(*view, box));
-    along->lit = along->lit || !shining.back().lamps.empty();
+    surface_lights.push_back(lights.SelectFor(*surface, rays));
+    radiance->has_lamps = radiance->has_lamps || !surface_lights.back().lamps.empty();
   }
-  std::fill_n(along->steady.begin(), block->count, 0.0F);
-  std::fill_n(along->lamps.begin(), block->count, 0.0F);
-  Walk(seen, block, [&](int i, int surface) {
-    const int ray = block->ray[i];
-    if (surface < 0) {
-      along->steady[ray] += block->through[i] * sky;
+  std::fill_n(radiance->steady.begin(), packet->count, 0.0F);
+  std::fill_n(radiance->lamps.begin(), packet->count, 0.0F);
+  TraceThroughHoles(candidates, packet, [&](int i, int index) {
+    const int ray = packet->ray[i];
+    if (index < 0) {
+      radiance->steady[ray] += packet->transmittance[i] * sky;
       return 0.0F;
     }
-    const SurfaceView& view = *seen[surface];
-    const float depth = 1.0F / block->w[i];
-    const Texture::Sample sample = LookUp(view, *block, i, depth);
-    const float reflected = block->through[i] * sample.reflected;
-    float light = view.light;
-    if (!shining.empty()) light += HeadLampLight(shining[surface], block->x[i], block->y[i], depth);
-    if (along->lit) along->lamps[ray] += reflected * StreetLampLight(shining[surface], block->x[i], block->y[i], depth);
-    along->steady[ray] += reflected * light + block->through[i] * sample.coverage * view.emission;
+    const ProjectedSurface& surface = *candidates[index];
+    const float depth = 1.0F / packet->inverse_depth[i];
+    const Texture::Sample sample = LookUpTexture(surface, *packet, i, depth);
+    const float reflected = packet->transmittance[i] * sample.reflected;
+    float light = surface.light;
+    if (!surface_lights.empty()) light += HeadLampRadiance(surface_lights[index], packet->x[i], packet->y[i], depth);
+    if (radiance->has_lamps) {
+      radiance->lamps[ray] += reflected * StreetLampRadiance(surface_lights[index], packet->x[i], packet->y[i], depth);
+    }
+    radiance->steady[ray] += reflected * light + packet->transmittance[i] * sample.coverage * surface.emission;
     return 1.0F - sample.coverage;
   });
 }
 
-float MeanOf(const float* rays, int count) {
+float Mean(const float* rays, int count) {
   float sum = 0.0F;
   for (int k = 0; k < count; ++k) sum += rays[k];
   return sum / static_cast<float>(count);
@@ -93,23 +99,13 @@ float MeanOf(const float* rays, int count) {
 
 }  // namespace
 
-std::vector<Tile> CutIntoTiles(int width, int height, int size) {
-  std::vector<Tile> tiles;
-  for (int y = 0; y < height; y += size) {
-    for (int x = 0; x < width; x += size) {
-      tiles.push_back({x, y, std::min(size, width - x), std::min(size, height - y)});
-    }
-  }
-  return tiles;
-}
-
 Renderer::Renderer(const Scene& scene, const geometry::Camera& camera, int samples)
     : scene_(scene),
       camera_(camera),
-      tree_(scene),
-      blind_(static_cast<std::size_t>(camera.width()) * static_cast<std::size_t>(camera.height())) {
-  if (samples < 1 || samples > kMostSamples) {
-    throw Error(ErrorKind::kInput, "renderer: samples must lie in [1, 16], not " + std::to_string(samples));
+      hierarchy_(scene),
+      has_no_ray_(static_cast<std::size_t>(camera.width()) * static_cast<std::size_t>(camera.height())) {
+  if (samples < 1 || samples > kMaxSamples) {
+    throw Error(ErrorKind::kInput, fmt::format("renderer: samples must lie in [1, {}], not {}", kMaxSamples, samples));
   }
   centres_ = CastRays(1);
   samples_ = samples == 1 ? centres_ : CastRays(samples);
@@ -118,124 +114,124 @@ Renderer::Renderer(const Scene& scene, const geometry::Camera& camera, int sampl
 Renderer::Rays Renderer::CastRays(int samples) {
   Rays rays;
   rays.per_pixel = samples * samples;
-  Vector2d ray = Vector2d::Zero();  // where there is none the last one stands in
+  Vector2d ray = Vector2d::Zero();  // the last one stands in for one that does not exist
   for (int p = 0; p < camera_.width() * camera_.height(); ++p) {
     const Vector2d centre(p % camera_.width(), p / camera_.width());
-    const double shift_x = samples == 1 ? 0.5 : RaysShift(p / camera_.width(), p % camera_.width());
-    const double shift_y = samples == 1 ? 0.5 : RaysShift(p % camera_.width(), p / camera_.width());
+    const double shift_x = samples == 1 ? 0.5 : GridShift(p / camera_.width(), p % camera_.width());
+    const double shift_y = samples == 1 ? 0.5 : GridShift(p % camera_.width(), p / camera_.width());
     for (int j = 0; j < samples; ++j) {
       for (int i = 0; i < samples; ++i) {
-        const Vector2d place((i + (j + shift_x) / samples) / samples,
-                             (j + (samples - 1 - i + shift_y) / samples) / samples);
-        const auto found = camera_.Undistort(centre + place - Vector2d(0.5, 0.5));
+        const Vector2d offset((i + (j + shift_x) / samples) / samples,
+                              (j + (samples - 1 - i + shift_y) / samples) / samples);
+        const auto found = camera_.Undistort(centre + offset - Vector2d(0.5, 0.5));
         if (found) ray = *found;
-        if (!found) blind_[p] = 1;
+        if (!found) has_no_ray_[p] = 1;
         rays.x.push_back(static_cast<float>(ray.x()));
         rays.y.push_back(static_cast<float>(ray.y()));
       }
     }
-    // One pixel is |det of the lens model's inverse| large on the plane z = 1, seen from the ray at hand.
+    // A pixel's area on the plane z = 1 is 1 / det of the lens model's Jacobian, by forward differences.
     constexpr double kStep = 1e-4;
-    Eigen::Matrix2d step;
+    Eigen::Matrix2d jacobian;
     for (int c = 0; c < 2; ++c) {
-      step.col(c) = (camera_.Distort(ray + kStep * Vector2d::Unit(c)) - camera_.Distort(ray)) / kStep;
+      jacobian.col(c) = (camera_.Distort(ray + kStep * Vector2d::Unit(c)) - camera_.Distort(ray)) / kStep;
     }
-    const double pixels2 = std::max(std::abs(step.determinant()), 1.0);
-    rays.level.push_back(static_cast<float>(-0.5 * std::log2(pixels2) - std::log2(samples)));
+    const double pixels2 = std::max(std::abs(jacobian.determinant()), 1.0);
+    rays.log2_spacing.push_back(static_cast<float>(-0.5 * std::log2(pixels2) - std::log2(samples)));
   }
   return rays;
 }
 
-Renderer::Visible Renderer::FindVisible(const Tile& tile, TimeNs from, TimeNs to, const geometry::SE3& T_world_cam_from,
-                                        const geometry::SE3& T_world_cam_to) const {
-  RayBox box = Bounds(tile);
-  const float pixel = std::exp2(*std::max_element(centres_.level.begin(), centres_.level.end()));
-  box = {box.x0 - pixel, box.x1 + pixel, box.y0 - pixel, box.y1 + pixel};
-  return {tree_.Find(box, from, to, T_world_cam_from, T_world_cam_to)};
+Renderer::VisibleSet Renderer::FindVisible(const Tile& tile, TimeNs from, TimeNs to,
+                                           const geometry::SE3& T_world_cam_from,
+                                           const geometry::SE3& T_world_cam_to) const {
+  RayFrustum rays = TileFrustum(tile);
+  const float pixel = std::exp2(*std::max_element(centres_.log2_spacing.begin(), centres_.log2_spacing.end()));
+  rays = {rays.x0 - pixel, rays.x1 + pixel, rays.y0 - pixel, rays.y1 + pixel};
+  return {hierarchy_.Find(rays, from, to, T_world_cam_from, T_world_cam_to)};
 }
 
-RayBox Renderer::Bounds(const Tile& tile) const {
+RayFrustum Renderer::TileFrustum(const Tile& tile) const {
   constexpr float kFar = std::numeric_limits<float>::infinity();
-  RayBox box{kFar, -kFar, kFar, -kFar};
+  RayFrustum bounds{kFar, -kFar, kFar, -kFar};
   for (int y = tile.y0; y < tile.y0 + tile.height; ++y) {
     const int first = (y * camera_.width() + tile.x0) * samples_.per_pixel;
     for (int i = first; i < first + tile.width * samples_.per_pixel; ++i) {
-      box.x0 = std::min(box.x0, samples_.x[i]);
-      box.x1 = std::max(box.x1, samples_.x[i]);
-      box.y0 = std::min(box.y0, samples_.y[i]);
-      box.y1 = std::max(box.y1, samples_.y[i]);
+      bounds.x0 = std::min(bounds.x0, samples_.x[i]);
+      bounds.x1 = std::max(bounds.x1, samples_.x[i]);
+      bounds.y0 = std::min(bounds.y0, samples_.y[i]);
+      bounds.y1 = std::max(bounds.y1, samples_.y[i]);
     }
   }
-  return box;
+  return bounds;
 }
 
-void Renderer::Gather(const Rays& rays, const Tile& part, RayBlock* block) const {
+void Renderer::GatherRays(const Rays& rays, const Tile& part, RayPacket* packet) const {
   int n = 0;
   for (int y = part.y0; y < part.y0 + part.height; ++y) {
     for (int x = part.x0; x < part.x0 + part.width; ++x) {
       const int pixel = y * camera_.width() + x;
       for (int k = 0; k < rays.per_pixel; ++k, ++n) {
-        block->x[n] = rays.x[pixel * rays.per_pixel + k];
-        block->y[n] = rays.y[pixel * rays.per_pixel + k];
-        block->level[n] = rays.level[pixel];
-        block->ray[n] = n;
+        packet->x[n] = rays.x[pixel * rays.per_pixel + k];
+        packet->y[n] = rays.y[pixel * rays.per_pixel + k];
+        packet->log2_spacing[n] = rays.log2_spacing[pixel];
+        packet->ray[n] = n;
       }
     }
   }
-  block->count = n;
-  std::fill_n(block->limit.begin(), n, std::numeric_limits<float>::infinity());
-  std::fill_n(block->through.begin(), n, 1.0F);
+  packet->count = n;
+  std::fill_n(packet->max_inverse_depth.begin(), n, std::numeric_limits<float>::infinity());
+  std::fill_n(packet->transmittance.begin(), n, 1.0F);
 }
 
-void Renderer::Render(const Tile& tile, const Visible& visible, TimeNs t, const geometry::SE3& T_world_cam,
+void Renderer::Render(const Tile& tile, const VisibleSet& visible, TimeNs t, const geometry::SE3& T_world_cam,
                       Radiance* radiance) const {
-  const auto views = Viewer(scene_, t, T_world_cam).Views(visible.surfaces, Bounds(tile));
+  const auto surfaces = SurfaceProjector(scene_, t, T_world_cam).ProjectAll(visible.surfaces, TileFrustum(tile));
   const Lights lights(scene_.lighting, T_world_cam);
   const int n = samples_.per_pixel;
-  const auto pixels = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
-  radiance->steady.assign(pixels, 0.0F);
-  radiance->lamps.assign(pixels, 0.0F);
-  radiance->lit = false;
-  RayBlock block;
-  AlongRays along;
+  radiance->steady.assign(tile.pixels(), 0.0F);
+  radiance->lamps.assign(tile.pixels(), 0.0F);
+  radiance->has_lamps = false;
+  RayPacket packet;
+  PacketRadiance packet_radiance;
   ForEachPart(tile, n, [&](const Tile& part) {
-    Gather(samples_, part, &block);
-    Shade(views, lights, static_cast<float>(scene_.lighting.sky), &block, &along);
-    radiance->lit = radiance->lit || along.lit;
+    GatherRays(samples_, part, &packet);
+    ShadeRays(surfaces, lights, static_cast<float>(scene_.lighting.sky), &packet, &packet_radiance);
+    radiance->has_lamps = radiance->has_lamps || packet_radiance.has_lamps;
     for (int p = 0; p < part.width * part.height; ++p) {
       const int x = part.x0 + p % part.width;
       const int y = part.y0 + p / part.width;
-      if (blind_[y * camera_.width() + x] != 0) continue;
-      const int place = (y - tile.y0) * tile.width + x - tile.x0;
-      radiance->steady[place] = MeanOf(&along.steady[p * n], n);
-      if (along.lit) radiance->lamps[place] = MeanOf(&along.lamps[p * n], n);
+      if (has_no_ray_[y * camera_.width() + x] != 0) continue;
+      const int position = (y - tile.y0) * tile.width + x - tile.x0;
+      radiance->steady[position] = Mean(&packet_radiance.steady[p * n], n);
+      if (packet_radiance.has_lamps) radiance->lamps[position] = Mean(&packet_radiance.lamps[p * n], n);
     }
   });
 }
 
-void Renderer::Depth(const Tile& tile, const Visible& visible, TimeNs t, const geometry::SE3& T_world_cam,
-                     std::span<float> depth, std::span<std::uint8_t> moving) const {
-  const auto views = Viewer(scene_, t, T_world_cam).Views(visible.surfaces, Bounds(tile));
-  RayBlock block;
+void Renderer::RenderDepth(const Tile& tile, const VisibleSet& visible, TimeNs t, const geometry::SE3& T_world_cam,
+                           std::span<float> depth, std::span<std::uint8_t> moving) const {
+  const auto surfaces = SurfaceProjector(scene_, t, T_world_cam).ProjectAll(visible.surfaces, TileFrustum(tile));
+  RayPacket packet;
   ForEachPart(tile, 1, [&](const Tile& part) {
-    Gather(centres_, part, &block);
-    const auto seen = Cull(views, block.Bounds());
-    const auto place = [&](int ray) {
+    GatherRays(centres_, part, &packet);
+    const auto candidates = CullOccluded(surfaces, packet.Frustum());
+    const auto position = [&](int ray) {
       return (part.y0 - tile.y0 + ray / part.width) * tile.width + part.x0 - tile.x0 + ray % part.width;
     };
-    for (int i = 0; i < block.count; ++i) {
-      depth[place(i)] = std::numeric_limits<float>::quiet_NaN();
-      moving[place(i)] = 0;
+    for (int i = 0; i < packet.count; ++i) {
+      depth[position(i)] = std::numeric_limits<float>::quiet_NaN();
+      moving[position(i)] = 0;
     }
-    Walk(seen, &block, [&](int i, int surface) {
-      if (surface < 0) return 0.0F;
-      const float z = 1.0F / block.w[i];
-      if (LookUp(*seen[surface], block, i, z).coverage < 0.5F) return 1.0F;
-      const int x = part.x0 + block.ray[i] % part.width;
-      const int y = part.y0 + block.ray[i] / part.width;
-      if (blind_[y * camera_.width() + x] != 0) return 0.0F;
-      depth[place(block.ray[i])] = z;
-      moving[place(block.ray[i])] = seen[surface]->moves ? 1 : 0;
+    TraceThroughHoles(candidates, &packet, [&](int i, int index) {
+      if (index < 0) return 0.0F;
+      const float z = 1.0F / packet.inverse_depth[i];
+      if (LookUpTexture(*candidates[index], packet, i, z).coverage < 0.5F) return 1.0F;
+      const int x = part.x0 + packet.ray[i] % part.width;
+      const int y = part.y0 + packet.ray[i] / part.width;
+      if (has_no_ray_[y * camera_.width() + x] != 0) return 0.0F;
+      depth[position(packet.ray[i])] = z;
+      moving[position(packet.ray[i])] = candidates[index]->moving ? 1 : 0;
       return 0.0F;
     });
   });

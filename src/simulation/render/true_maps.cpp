@@ -3,33 +3,36 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
+
+#include "evo/core/parallel.hpp"
+#include "simulation/render/renderer.hpp"
 
 namespace evo::simulation {
 
 namespace {
 
-constexpr int kTile = 32;  // px
+constexpr int kTile = 32;  // px; with one ray a pixel, smaller tiles spend more time on finding visible surfaces
 
 }  // namespace
 
 DepthCamera::DepthCamera(const Scene& scene, const geometry::Camera& camera, ThreadPool* pool)
-    : camera_(camera),
-      renderer_(scene, camera, 1),
-      tiles_(CutIntoTiles(camera.width(), camera.height(), kTile)),
-      pool_(pool) {}
+    : camera_(camera), renderer_(std::make_unique<const Renderer>(scene, camera, 1)), pool_(pool) {}
 
-events::DepthMap DepthCamera::At(TimeNs t, const geometry::SE3& T_world_cam) const {
+DepthCamera::~DepthCamera() = default;
+
+events::DepthMap DepthCamera::Render(TimeNs t, const geometry::SE3& T_world_cam) const {
   const auto width = static_cast<std::size_t>(camera_.width());
   const std::size_t pixels = width * static_cast<std::size_t>(camera_.height());
   events::DepthMap map{camera_.width(), camera_.height(), std::vector<double>(pixels),
                        std::vector<std::uint8_t>(pixels)};
-  pool_->ForEach(tiles_.size(), [&](std::size_t i) {
-    const Tile& tile = tiles_[i];
-    const std::size_t tile_pixels = static_cast<std::size_t>(tile.width) * static_cast<std::size_t>(tile.height);
-    std::vector<float> depth(tile_pixels);
-    std::vector<std::uint8_t> moving(tile_pixels);
-    const auto visible = renderer_.FindVisible(tile, t, t, T_world_cam, T_world_cam);
-    renderer_.Depth(tile, visible, t, T_world_cam, depth, moving);
+  const std::vector<Tile> tiles = CutIntoTiles(camera_.width(), camera_.height(), kTile);
+  pool_->ForEach(tiles.size(), [&](std::size_t i) {
+    const Tile& tile = tiles[i];
+    std::vector<float> depth(tile.pixels());
+    std::vector<std::uint8_t> moving(tile.pixels());
+    const auto visible = renderer_->FindVisible(tile, t, t, T_world_cam, T_world_cam);
+    renderer_->RenderDepth(tile, visible, t, T_world_cam, depth, moving);
     for (int row = 0; row < tile.height; ++row) {
       const auto from = static_cast<std::ptrdiff_t>(row) * tile.width;
       const auto to = static_cast<std::ptrdiff_t>(static_cast<std::size_t>(tile.y0 + row) * width) + tile.x0;
@@ -52,9 +55,9 @@ events::FlowMap StaticFlow(const geometry::Camera& camera, const events::DepthMa
     if (!ray || !std::isfinite(depth.depth[i])) continue;
     const Eigen::Vector3d point = T_next_now * (depth.depth[i] * ray->homogeneous());
     if (!(point.z() > 0.0)) continue;
-    const Eigen::Vector2d place = camera.Project(point);
-    map.flow[i] = place.x() - x;
-    map.flow[pixels + i] = place.y() - y;
+    const Eigen::Vector2d pixel = camera.Project(point);
+    map.flow[i] = pixel.x() - x;
+    map.flow[pixels + i] = pixel.y() - y;
   }
   return map;
 }

@@ -9,8 +9,8 @@ namespace evo::simulation {
 
 namespace {
 
-constexpr float kDarkest = 0.05F;
-constexpr float kBrightest = 0.9F;
+constexpr float kMinReflectance = 0.05F;  // of black paint
+constexpr float kMaxReflectance = 0.9F;   // of white paint
 
 }  // namespace
 
@@ -22,7 +22,7 @@ Painter::Painter(int width, int height, double reflectance, double coverage)
 
 void Painter::Rectangle(int x, int y, int width, int height, double reflectance) {
   for (int j = y; j < y + height; ++j) {
-    for (int i = x; i < x + width; ++i) At(i, j) = {static_cast<float>(reflectance), 1.0F};
+    for (int i = x; i < x + width; ++i) TexelAt(i, j) = {static_cast<float>(reflectance), 1.0F};
   }
 }
 
@@ -38,7 +38,7 @@ void Painter::Ellipse(double x, double y, double radius_x, double radius_y, doub
     for (int i = static_cast<int>(std::floor(x - radius_x)); i <= static_cast<int>(std::ceil(x + radius_x)); ++i) {
       const double u = (i + 0.5 - x) / radius_x;
       const double v = (j + 0.5 - y) / radius_y;
-      if (u * u + v * v <= 1.0) At(i, j) = {static_cast<float>(reflectance), 1.0F};
+      if (u * u + v * v <= 1.0) TexelAt(i, j) = {static_cast<float>(reflectance), 1.0F};
     }
   }
 }
@@ -54,19 +54,19 @@ void Painter::Line(double x0, double y0, double x1, double y1, double thickness,
 }
 
 void Painter::Tint(int x, int y, int width, int height, double factor) {
-  TintDown(x, y, width, height, factor, factor);
+  TintGradient(x, y, width, height, factor, factor);
 }
 
-void Painter::TintDown(int x, int y, int width, int height, double top, double bottom) {
+void Painter::TintGradient(int x, int y, int width, int height, double top, double bottom) {
   for (int j = 0; j < height; ++j) {
     const auto factor = static_cast<float>(top + (bottom - top) * j / std::max(1, height - 1));
-    for (int i = 0; i < width; ++i) At(x + i, y + j).reflectance *= factor;
+    for (int i = 0; i < width; ++i) TexelAt(x + i, y + j).reflectance *= factor;
   }
 }
 
-void Painter::Hole(int x, int y, int width, int height) {
+void Painter::CutHole(int x, int y, int width, int height) {
   for (int j = y; j < y + height; ++j) {
-    for (int i = x; i < x + width; ++i) At(i, j).coverage = 0.0F;
+    for (int i = x; i < x + width; ++i) TexelAt(i, j).coverage = 0.0F;
   }
 }
 
@@ -84,7 +84,7 @@ void Painter::AddOctave(Random& random, int cell_x, int cell_y, double amplitude
   cell_y = std::min(cell_y, height_);
   const int columns = width_ / cell_x;
   const int rows = height_ / cell_y;
-  // A uniform value in +-2.6 has, after the smoothing between the lattice's points, a standard deviation of about 1.
+  // Uniform values in [-2.6, 2.6] have a standard deviation of about 1 after interpolation between the lattice points.
   std::vector<float> lattice(static_cast<std::size_t>(columns) * rows);
   for (float& value : lattice) value = static_cast<float>(random.Uniform(-2.6, 2.6) * amplitude);
   const auto smooth = [](float s) { return s * s * (3.0F - 2.0F * s); };
@@ -126,7 +126,7 @@ void Painter::Lettering(Random& random, int x, int y, int width, int height, dou
   const int stroke = std::max(1, height / 7);
   const int letter = std::max(3, height * 6 / 10);
   for (int left = x; left + letter <= x + width; left += letter + 2 * stroke) {
-    if (random.Chance(0.12)) continue;  // between two words
+    if (random.Chance(0.12)) continue;  // a space
     if (random.Chance(0.8)) Rectangle(left, y, stroke, height, reflectance);
     if (random.Chance(0.5)) Rectangle(left + letter - stroke, y, stroke, height, reflectance);
     if (random.Chance(0.6)) Rectangle(left, y, letter, stroke, reflectance);
@@ -137,7 +137,7 @@ void Painter::Lettering(Random& random, int x, int y, int width, int height, dou
 }
 
 Texture Painter::Finish() {
-  for (Texel& texel : texels_) texel.reflectance = std::clamp(texel.reflectance, kDarkest, kBrightest);
+  for (Texel& texel : texels_) texel.reflectance = std::clamp(texel.reflectance, kMinReflectance, kMaxReflectance);
   return Texture(width_, height_, std::move(texels_));
 }
 

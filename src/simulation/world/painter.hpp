@@ -3,45 +3,50 @@
 #include <vector>
 
 #include "evo/core/random.hpp"
-#include "evo/simulation/texture.hpp"
+#include "simulation/world/texture.hpp"
 
 namespace evo::simulation {
 
-/// Draws a texture. It has no borders: what leaves on one side comes in on the other. Sizes in texels.
+/// Draws a texture that repeats: what leaves on one side enters on the other. Sizes in texels.
+///
+/// Lines and ellipses are not OpenCV's: those do not repeat, and their edges cover other texels, which would change
+/// every simulated byte.
 class Painter {
  public:
-  /// Sizes are powers of two. Starts with one reflectance and coverage everywhere.
+  /// Sizes are powers of two. All texels start with the same reflectance and coverage.
   Painter(int width, int height, double reflectance, double coverage = 1.0);
 
   int width() const { return width_; }
   int height() const { return height_; }
 
-  /// Solid paint.
+  // Solid paint.
   void Rectangle(int x, int y, int width, int height, double reflectance);
   void Outline(int x, int y, int width, int height, int thickness, double reflectance);
   void Ellipse(double x, double y, double radius_x, double radius_y, double reflectance);
   void Line(double x0, double y0, double x1, double y1, double thickness, double reflectance);
   /// Multiplies the reflectance: shadows, stains, worn paint.
   void Tint(int x, int y, int width, int height, double factor);
-  /// From the factor at the top to that at the bottom.
-  void TintDown(int x, int y, int width, int height, double top, double bottom);
-  void Hole(int x, int y, int width, int height);
+  /// Multiplies the reflectance by a factor that is linear from top to bottom.
+  void TintGradient(int x, int y, int width, int height, double top, double bottom);
+  /// Sets the coverage to 0.
+  void CutHole(int x, int y, int width, int height);
 
-  /// Adds smooth noise with features of `cell` texels (a power of two, at most the size) of standard deviation about
-  /// `amplitude`, and `octaves` - 1 finer ones, each half as coarse and of `gain` of the strength.
+  /// Adds value noise of `octaves` octaves. The first has cells of `cell_x` x `cell_y` texels (powers of two) and a
+  /// standard deviation of about `amplitude`; each further one has cells of half the size and `gain` times the
+  /// amplitude.
   void Noise(Random& random, int cell_x, int cell_y, int octaves, double amplitude, double gain = 0.6);
-  /// Noise from texel to texel.
+  /// Adds white noise of the standard deviation `amplitude`.
   void Grain(Random& random, double amplitude);
-  /// A line that wanders: a crack, a twig.
+  /// A random walk: a crack, a twig.
   void Crack(Random& random, double x, double y, double length, double thickness, double reflectance);
-  /// Blobs in rows like lettering, in the given box.
+  /// Strokes like a line of lettering in the given box.
   void Lettering(Random& random, int x, int y, int width, int height, double reflectance);
 
-  /// Reflectances are brought into [0.05, 0.9]. Leaves nothing behind.
+  /// Clamps reflectances to [0.05, 0.9], those of black and white paint, and hands over the texels.
   Texture Finish();
 
  private:
-  Texel& At(int x, int y) {
+  Texel& TexelAt(int x, int y) {
     return texels_[static_cast<std::size_t>((y & (height_ - 1)) * width_ + (x & (width_ - 1)))];
   }
   void AddOctave(Random& random, int cell_x, int cell_y, double amplitude);

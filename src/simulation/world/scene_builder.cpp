@@ -6,8 +6,8 @@
 
 namespace evo::simulation {
 
-double Sun::Shade(const Eigen::Vector3d& normal) const {
-  return 1.0 - share + share * std::max(0.0, normal.dot(towards));
+double Sun::DiffuseShade(const Eigen::Vector3d& normal) const {
+  return 1.0 - ratio + ratio * std::max(0.0, normal.dot(towards));
 }
 
 SceneBuilder::SceneBuilder() {
@@ -25,33 +25,33 @@ int SceneBuilder::AddBody(Body body) {
 }
 
 void SceneBuilder::Add(const Eigen::Vector3d& origin, const Eigen::Vector3d& edge_u, const Eigen::Vector3d& edge_v,
-                       const Look& look, const Eigen::Vector3d& outwards) {
+                       const Material& material, const Eigen::Vector3d& outwards) {
   Eigen::Vector3d normal = edge_u.cross(edge_v).normalized();
   if (normal.dot(outwards) < 0.0) normal = -normal;
   Surface surface;
   surface.origin = origin;
   surface.edge_u = edge_u;
   surface.edge_v = edge_v;
-  surface.texture = look.texture;
-  surface.texel_origin = look.texel_origin;
-  surface.texels = look.texels;
-  surface.shade = static_cast<float>(look.tone * sun_.Shade(normal));
-  surface.emission = static_cast<float>(look.emission);
-  surface.body = look.body;
+  surface.texture = material.texture;
+  surface.texel_origin = material.texel_origin;
+  surface.texels = material.texels;
+  surface.shade = static_cast<float>(material.tone * sun_.DiffuseShade(normal));
+  surface.emission = static_cast<float>(material.emission);
+  surface.body = material.body;
   scene_.surfaces.push_back(surface);
 }
 
-Look SceneBuilder::Whole(int texture, double tone) const {
-  Look look;
-  look.texture = texture;
-  look.texels = {scene_.textures[texture].width(), scene_.textures[texture].height()};
-  look.tone = tone;
-  return look;
+Material SceneBuilder::WholeTexture(int texture, double tone) const {
+  Material material;
+  material.texture = texture;
+  material.texels = {scene_.textures[texture].width(), scene_.textures[texture].height()};
+  material.tone = tone;
+  return material;
 }
 
-void SceneBuilder::AddBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& size, double turn, int texture,
+void SceneBuilder::AddBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& size, double yaw, int texture,
                           double tone) {
-  const Eigen::Matrix3d axes = Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  const Eigen::Matrix3d axes = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitY()).toRotationMatrix();
   for (int axis = 0; axis < 3; ++axis) {
     // v points down on the upright sides.
     const int v_axis = axis == 1 ? 2 : 1;
@@ -59,8 +59,8 @@ void SceneBuilder::AddBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& 
     const Eigen::Vector3d v = axes.col(v_axis) * size[v_axis];
     for (const double side : {-1.0, 1.0}) {
       const Eigen::Vector3d outwards = axes.col(axis) * side;
-      const Eigen::Vector3d u = outwards.cross(axes.col(v_axis)) * size[u_axis];  // to the right of who looks at it
-      Add(centre + outwards * (0.5 * size[axis]) - 0.5 * (u + v), u, v, Whole(texture, tone), outwards);
+      const Eigen::Vector3d u = outwards.cross(axes.col(v_axis)) * size[u_axis];  // to the viewer's right
+      Add(centre + outwards * (0.5 * size[axis]) - 0.5 * (u + v), u, v, WholeTexture(texture, tone), outwards);
     }
   }
 }

@@ -3,45 +3,46 @@
 #include <Eigen/Core>
 #include <utility>
 
-#include "evo/simulation/scene.hpp"
+#include "simulation/world/scene.hpp"
 
 namespace evo::simulation {
 
-/// What a surface shows.
-struct Look {
+/// The appearance of a surface and the body that it belongs to.
+struct Material {
   int texture = 0;
   Eigen::Vector2d texel_origin = Eigen::Vector2d::Zero();
   Eigen::Vector2d texels = Eigen::Vector2d::Ones();
-  double tone = 1.0;  ///< scales the texture's reflectance
-  double emission = 0.0;
+  double tone = 1.0;      ///< factor of the texture's reflectance
+  double emission = 0.0;  ///< radiance
   int body = 0;
 };
 
-/// Sunlight from one direction and light from the whole sky.
+/// Directional sunlight and uniform skylight.
 struct Sun {
   Eigen::Vector3d towards = -Eigen::Vector3d::UnitY();  ///< unit vector
-  double share = 0.0;                                   ///< of the sun in the light on a surface that faces it
-  /// Light on a surface with this outward normal, 1 at most.
-  double Shade(const Eigen::Vector3d& normal) const;
+  double ratio = 0.0;                                   ///< of sunlight in the light on a surface that faces the sun
+  /// Lambertian shading of a surface with this outward normal, at most 1.
+  double DiffuseShade(const Eigen::Vector3d& normal) const;
 };
 
-/// Collects a scene. Body 0, the static world, is there from the start.
+/// Builds a scene, which has body 0, the static world, from the start.
 class SceneBuilder {
  public:
   SceneBuilder();
 
+  /// Returns the texture's index.
   int Add(Texture texture);
+  /// Returns the body's index.
   int AddBody(Body body);
   void SetSun(const Sun& sun) { sun_ = sun; }
 
-  /// Lit as a surface whose outward normal points to the side of `outwards`.
+  /// Adds a surface, shaded for the normal on the side of `outwards`.
   void Add(const Eigen::Vector3d& origin, const Eigen::Vector3d& edge_u, const Eigen::Vector3d& edge_v,
-           const Look& look, const Eigen::Vector3d& outwards);
-  /// The whole of a texture.
-  Look Whole(int texture, double tone = 1.0) const;
-  /// An upright axis-parallel box, each of its six sides with the whole of `texture`, turned about the vertical through
-  /// its centre.
-  void AddBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& size, double turn, int texture, double tone);
+           const Material& material, const Eigen::Vector3d& outwards);
+  /// One period of a texture over the whole surface.
+  Material WholeTexture(int texture, double tone = 1.0) const;
+  /// Adds an upright box with `texture` on each of its six sides, rotated by `yaw` (rad) about its vertical axis.
+  void AddBox(const Eigen::Vector3d& centre, const Eigen::Vector3d& size, double yaw, int texture, double tone);
 
   Lighting& lighting() { return scene_.lighting; }
   Scene Take() { return std::move(scene_); }

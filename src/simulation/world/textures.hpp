@@ -1,24 +1,26 @@
 #pragma once
 
 #include "evo/core/random.hpp"
-#include "evo/simulation/texture.hpp"
+#include "simulation/world/texture.hpp"
 
 namespace evo::simulation {
 
-// What the surfaces of the simulated world look like. Each call draws another picture of the kind from `random`.
+// Textures of the simulated world. Each call draws a random texture of its kind.
 
-/// Lanes of the carriageway, across it in u. Lengths in metres.
+/// Cross-section of the carriageway, along u. Lengths in metres.
 struct CarriagewayLayout {
   double lanes_m = 7.0;    ///< both lanes
   double parking_m = 2.2;  ///< strip on each side of them
-  bool bays = true;        ///< lines between the places of parked cars
+  bool bays = true;        ///< marked parking bays
   double width() const { return lanes_m + 2.0 * parking_m; }
 };
 inline constexpr int kRoadWidthTexels = 1024;
-/// Asphalt with patches, cracks and tar; with a dashed centre line, edge lines and bays; with a zebra crossing.
-/// Square texels of layout.width() / kRoadWidthTexels.
+// kRoadWidthTexels x `length` square texels of layout.width() / kRoadWidthTexels.
+/// Asphalt with patches, cracks and tar.
 Texture PaintAsphalt(Random& random, int length);
+/// Asphalt with a dashed centre line, edge lines and parking bays.
 Texture PaintLanes(Random& random, const CarriagewayLayout& layout, int length);
+/// Asphalt with a zebra crossing.
 Texture PaintZebra(Random& random, const CarriagewayLayout& layout, int length);
 /// 512 x 512 texels of 1 cm.
 Texture PaintPavement(Random& random);
@@ -27,7 +29,7 @@ Texture PaintKerb(Random& random);
 /// 512 x 512 texels of 4 cm.
 Texture PaintGround(Random& random);
 
-/// Facades are drawn in cells of one window axis by one floor, kFacadeCell texels of about 2.5 cm square.
+// Facades consist of cells of one window axis by one floor: kFacadeCell x kFacadeCell texels of about 2.5 cm.
 inline constexpr int kFacadeCell = 128;
 inline constexpr int kFacadeAxes = 8;
 inline constexpr int kFacadeFloors = 4;
@@ -36,7 +38,7 @@ Texture PaintUpperFloors(Random& random);
 Texture PaintGroundFloor(Random& random);
 /// A wall without windows, 512 x 512.
 Texture PaintWall(Random& random);
-/// A triangle of it on its base with holes beside it, 128 x 64.
+/// A triangular wall with holes beside it, 128 x 64.
 Texture PaintGable(Random& random);
 /// The panes of a window, 64 x 64, with holes where its frame and curtains are.
 Texture PaintLitWindow(Random& random);
@@ -45,33 +47,37 @@ Texture PaintRoof(Random& random);
 
 /// One crown, with holes between the leaves, 256 x 256.
 Texture PaintFoliage(Random& random);
-/// Leaves without a shape, to be repeated, 256 x 256.
+/// A strip of leaves that repeats in u, 256 x 256.
 Texture PaintHedge(Random& random);
 Texture PaintBark(Random& random);
 /// Pickets with gaps, 256 x 64 (width x height).
 Texture PaintFence(Random& random);
 
-/// Outline of a car seen from its side, with holes around it; 512 x 256: the front at u = 0, the foot of the wind
-/// screen at 130, that of the rear window at `rear` (420 to 500, saloon to estate); the roof at v = 0, the bonnet at
-/// 110.
+/// The side of a car with holes around it, 512 x 256. The front lies at u = 0, the foot of the wind screen at 130, the
+/// foot of the rear window at `rear` (420 to 500, saloon to estate), the roof at v = 0 and the bonnet at 110.
 Texture PaintCarSide(double rear);
-/// Its end with number plate and lamps, 256 x 128, without windows; the rear's lamps are dark.
+/// The front or rear of a car with number plate and lamps, without windows, 256 x 128.
 Texture PaintCarEnd(Random& random, bool front);
-/// Its roof and bonnet.
+/// Roof and bonnet, 64 x 64.
 Texture PaintCarPaint(Random& random);
+/// 64 x 64.
 Texture PaintCarGlass(Random& random);
-/// The dark under a car, soft at its ends, 64 x 128.
+/// The shadow under a car with soft edges, 64 x 128.
 Texture PaintCarShadow();
 
-/// Lettering in a frame, 256 x 64; a round or square traffic sign, 64 x 64 with holes around it.
+/// Lettering in a frame, 256 x 64.
 Texture PaintShopSign(Random& random);
+/// Round or square, with holes around it, 64 x 64.
 Texture PaintTrafficSign(Random& random);
-/// High-contrast shapes, 512 x 512; a few large ones; a picture like a photograph's; a printed box's side, 256 x 256.
+/// Many high-contrast shapes, 512 x 512.
 Texture PaintPoster(Random& random);
+/// A few large shapes, 512 x 512.
 Texture PaintPlacard(Random& random);
+/// Detail at all scales as in a photograph, 512 x 512.
 Texture PaintPicture(Random& random);
+/// A printed cardboard box, 256 x 256.
 Texture PaintBoxSide(Random& random);
-/// Of one reflectance with faint noise, 64 x 64.
+/// Uniform reflectance with faint noise, 64 x 64.
 Texture PaintPlain(Random& random, double reflectance);
 
 }  // namespace evo::simulation

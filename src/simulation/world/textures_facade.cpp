@@ -23,8 +23,8 @@ void PaintBricks(Random& random, Painter* painter, double reflectance) {
   }
 }
 
-// Brick, plaster or panels of concrete.
-Painter Wall(Random& random, int width, int height) {
+/// Brick, plaster or concrete panels.
+Painter MakeWallPainter(Random& random, int width, int height) {
   const int kind = random.Index(3);
   const double reflectance = kind == 0 ? random.Uniform(0.18, 0.34) : random.Uniform(0.3, 0.62);
   Painter painter(width, height, kind == 0 ? reflectance * 1.5 : reflectance);
@@ -36,8 +36,8 @@ Painter Wall(Random& random, int width, int height) {
   painter.Noise(random, 64, 128, 5, 0.015, 0.75);
   painter.Grain(random, 0.01);
   for (int i = 0; i < width / 64; ++i) {  // rain
-    painter.TintDown(random.Index(width), random.Index(height), Between(random, 3, 12), Between(random, 40, 120), 0.8,
-                     1.0);
+    painter.TintGradient(random.Index(width), random.Index(height), Between(random, 3, 12), Between(random, 40, 120),
+                         0.8, 1.0);
   }
   return painter;
 }
@@ -68,7 +68,7 @@ WindowStyle DrawStyle(Random& random) {
   return style;
 }
 
-// Glass: dark, with a reflection of the sky, at times a curtain or a blind.
+/// Dark glass with a reflection of the sky, some with a curtain or a blind.
 void PaintGlass(Random& random, Painter* painter, int x, int y, int width, int height) {
   painter->Rectangle(x, y, width, height, random.Uniform(0.06, 0.13));
   if (random.Chance(0.35))
@@ -78,7 +78,7 @@ void PaintGlass(Random& random, Painter* painter, int x, int y, int width, int h
     painter->Rectangle(x, y, curtain, height, 0.45);
     painter->Rectangle(x + width - curtain, y, curtain, height, 0.45);
   }
-  painter->TintDown(x, y, width, height, random.Uniform(1.3, 2.2), 1.0);
+  painter->TintGradient(x, y, width, height, random.Uniform(1.3, 2.2), 1.0);
 }
 
 void PaintWindow(Random& random, Painter* painter, int x, int y, const WindowStyle& style) {
@@ -108,7 +108,7 @@ void PaintWindow(Random& random, Painter* painter, int x, int y, const WindowSty
 
 void PaintShopWindow(Random& random, Painter* painter, int x) {
   painter->Rectangle(x + 8, 36, 112, 78, 0.08);
-  for (int i = 0; i < 9; ++i) {  // what is on display
+  for (int i = 0; i < 9; ++i) {  // goods on display
     const int height = Between(random, 8, 40);
     painter->Rectangle(x + Between(random, 12, 100), 112 - height, Between(random, 5, 16), height,
                        random.Uniform(0.12, 0.7));
@@ -145,7 +145,7 @@ void PaintShutter(Random& random, Painter* painter, int x) {
 }  // namespace
 
 Texture PaintUpperFloors(Random& random) {
-  Painter painter = Wall(random, kWidth, kHeight);
+  Painter painter = MakeWallPainter(random, kWidth, kHeight);
   const WindowStyle style = DrawStyle(random);
   const bool ledges = random.Chance(0.6);
   const bool pilasters = random.Chance(0.35);
@@ -169,7 +169,7 @@ Texture PaintUpperFloors(Random& random) {
 }
 
 Texture PaintGroundFloor(Random& random) {
-  Painter painter = Wall(random, kWidth, kFacadeCell);
+  Painter painter = MakeWallPainter(random, kWidth, kFacadeCell);
   painter.Rectangle(0, 0, kWidth, 5, 0.6);
   painter.Tint(0, 5, kWidth, 3, 0.5);
   painter.Tint(0, 112, kWidth, 16, 0.7);
@@ -194,26 +194,26 @@ Texture PaintGroundFloor(Random& random) {
 }
 
 Texture PaintWall(Random& random) {
-  Painter painter = Wall(random, 512, 512);
+  Painter painter = MakeWallPainter(random, 512, 512);
   return painter.Finish();
 }
 
 Texture PaintGable(Random& random) {
-  Painter painter = Wall(random, 128, 64);
+  Painter painter = MakeWallPainter(random, 128, 64);
   for (int y = 0; y < 64; ++y) {
-    painter.Hole(0, y, 63 - y, 1);
-    painter.Hole(65 + y, y, 63 - y, 1);
+    painter.CutHole(0, y, 63 - y, 1);
+    painter.CutHole(65 + y, y, 63 - y, 1);
   }
   return painter.Finish();
 }
 
 Texture PaintLitWindow(Random& random) {
   Painter painter(64, 64, 0.5);
-  painter.Hole(30, 0, 4, 64);
-  painter.Hole(0, 20, 64, 3);
+  painter.CutHole(30, 0, 4, 64);
+  painter.CutHole(0, 20, 64, 3);
   const int curtain = Between(random, 6, 12);
-  painter.Hole(0, 0, curtain, 64);
-  painter.Hole(64 - curtain, 0, curtain, 64);
+  painter.CutHole(0, 0, curtain, 64);
+  painter.CutHole(64 - curtain, 0, curtain, 64);
   return painter.Finish();
 }
 

@@ -41,7 +41,7 @@ Texture PaintFoliage(Random& random) {
 
 Texture PaintHedge(Random& random) {
   Painter painter(kSize, kSize, 0.1, 1.0);
-  painter.Hole(0, 0, kSize, 40);
+  painter.CutHole(0, 0, kSize, 40);
   for (int i = 0; i < 5000; ++i) {
     const double height = std::abs(random.Normal()) * 14.0;  // ragged above, closed below
     const double y = random.Chance(0.3) ? 46.0 - height : random.Uniform(38.0, kSize - 6.0);

@@ -8,11 +8,11 @@ namespace evo::simulation {
 
 namespace {
 
-constexpr double kPaint = 0.75;  // of lane markings
+constexpr double kMarking = 0.75;  // reflectance of lane markings
 
 int Between(Random& random, int low, int high) { return low + random.Index(high - low); }
 
-// Places where the road was opened and closed again, with a seam of tar.
+/// Repaired patches with a seam of tar.
 void PaintPatches(Random& random, Painter* painter, int count) {
   for (int i = 0; i < count; ++i) {
     const int width = Between(random, 60, 260);
@@ -50,7 +50,7 @@ void PaintCracks(Random& random, Painter* painter) {
   }
 }
 
-Painter Asphalt(Random& random, int length) {
+Painter MakeAsphaltPainter(Random& random, int length) {
   Painter painter(kRoadWidthTexels, length, random.Uniform(0.22, 0.28));
   const int area = kRoadWidthTexels * length;
   PaintPatches(random, &painter, std::max(1, area / 160'000));
@@ -59,7 +59,7 @@ Painter Asphalt(Random& random, int length) {
   return painter;
 }
 
-// Stones, dirt and wear over everything, markings too.
+/// Stones, dirt and wear over everything including the markings.
 Texture Weather(Random& random, Painter* painter) {
   painter->Noise(random, 256, 256, 3, 0.015, 0.8);
   painter->Noise(random, 32, 64, 4, 0.015, 0.8);
@@ -72,9 +72,9 @@ Texture Weather(Random& random, Painter* painter) {
   return painter->Finish();
 }
 
-// Lines are driven off in places.
+/// A marking that is worn in places.
 void MarkRectangle(Random& random, Painter* painter, int x, int y, int width, int length) {
-  painter->Rectangle(x, y, width, length, kPaint);
+  painter->Rectangle(x, y, width, length, kMarking);
   for (int i = 0; i < width * length / 150; ++i) {
     painter->Ellipse(x + random.Uniform() * width, y + random.Uniform() * length, random.Uniform(0.8, 3.0),
                      random.Uniform(0.8, 4.0), 0.3);
@@ -84,12 +84,12 @@ void MarkRectangle(Random& random, Painter* painter, int x, int y, int width, in
 }  // namespace
 
 Texture PaintAsphalt(Random& random, int length) {
-  Painter painter = Asphalt(random, length);
+  Painter painter = MakeAsphaltPainter(random, length);
   return Weather(random, &painter);
 }
 
 Texture PaintLanes(Random& random, const CarriagewayLayout& layout, int length) {
-  Painter painter = Asphalt(random, length);
+  Painter painter = MakeAsphaltPainter(random, length);
   const double texels_per_m = kRoadWidthTexels / layout.width();
   const auto texels = [&](double metres) { return static_cast<int>(std::lround(metres * texels_per_m)); };
   const int line = std::max(2, texels(0.14));
@@ -108,7 +108,7 @@ Texture PaintLanes(Random& random, const CarriagewayLayout& layout, int length) 
 }
 
 Texture PaintZebra(Random& random, const CarriagewayLayout& layout, int length) {
-  Painter painter = Asphalt(random, length);
+  Painter painter = MakeAsphaltPainter(random, length);
   const double texels_per_m = kRoadWidthTexels / layout.width();
   const auto texels = [&](double metres) { return static_cast<int>(std::lround(metres * texels_per_m)); };
   for (double x = 0.3; x + 0.5 < layout.width(); x += 1.0) {
@@ -145,7 +145,7 @@ Texture PaintKerb(Random& random) {
     painter.Rectangle(x, 0, 128, 16, random.Uniform(0.4, 0.6));
     painter.Rectangle(x, 0, 3, 16, 0.12);
   }
-  painter.TintDown(0, 0, 512, 16, 1.1, 0.7);
+  painter.TintGradient(0, 0, 512, 16, 1.1, 0.7);
   painter.Noise(random, 32, 16, 4, 0.03, 0.8);
   return painter.Finish();
 }

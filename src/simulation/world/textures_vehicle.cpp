@@ -9,7 +9,7 @@ namespace evo::simulation {
 
 namespace {
 
-constexpr double kBodyPaint = 0.7;  // lowered by the surface's shade for darker cars
+constexpr double kBodyPaint = 0.7;  // reflectance; Material::tone makes darker cars
 
 // Texels are higher than wide: 8.4 mm by 6 mm.
 void PaintWheel(Painter* painter, double x, double y) {
@@ -41,13 +41,13 @@ Texture PaintCarSide(double rear) {
     if (glass < 100 && !pillar) painter.Rectangle(x, glass, 1, 102 - glass, 0.09 + 0.05 * ((x / 40) % 2));
   }
   painter.Rectangle(4, 108, 504, 100, kBodyPaint);
-  painter.TintDown(4, 108, 504, 100, 1.15, 0.65);
+  painter.TintGradient(4, 108, 504, 100, 1.15, 0.65);
   painter.Rectangle(4, 196, 504, 14, 0.12);                                   // sill
   for (const int x : {165, 300, 415}) painter.Rectangle(x, 106, 2, 90, 0.2);  // doors
   for (const int x : {270, 390}) painter.Rectangle(x, 124, 22, 5, 0.2);       // handles
   painter.Rectangle(4, 122, 26, 18, 0.85);
   painter.Rectangle(490, 122, 18, 20, 0.25);
-  painter.Hole(0, 100, 6, 30);
+  painter.CutHole(0, 100, 6, 30);
   for (const double x : {100.0, 405.0}) PaintWheel(&painter, x, 200.0);
   return painter.Finish();
 }
@@ -75,7 +75,7 @@ Texture PaintCarPaint(Random& random) {
 
 Texture PaintCarGlass(Random& random) {
   Painter painter(64, 64, 0.1);
-  painter.TintDown(0, 0, 64, 64, 2.5, 0.9);
+  painter.TintGradient(0, 0, 64, 64, 2.5, 0.9);
   painter.Noise(random, 32, 32, 3, 0.02);
   painter.Outline(0, 0, 64, 64, 2, 0.06);
   return painter.Finish();

@@ -9,19 +9,20 @@ namespace evo::simulation {
 
 namespace {
 
-constexpr std::uint64_t kParkedStream = 0x7061726B;
-constexpr std::uint64_t kOncomingStream = 0x6D6F7665;
-constexpr std::uint64_t kAheadStream = 0x6168656164;
+constexpr std::uint64_t kParkedStream = 0x7061726B;    // "park"
+constexpr std::uint64_t kOncomingStream = 0x6D6F7665;  // "move"
+constexpr std::uint64_t kAheadStream = 0x6168656164;   // "ahead"
+// A compact car, m.
 constexpr double kLength = 4.3;
 constexpr double kWidth = 1.72;
 constexpr double kHeight = 1.5;
-constexpr double kBonnet = 0.87;  // height
+constexpr double kBonnetHeight = 0.87;
 constexpr double kTexelLength = kLength / 512.0;
 constexpr double kTexelHeight = kHeight / 256.0;
 constexpr double kHeadway = 1.3;      // s from car to car
-constexpr double kStandingGap = 7.0;  // m from middle to middle, standing
+constexpr double kStandingGap = 7.0;  // m from centre to centre at rest
 
-// Cars of a few shapes, built in a frame on the ground below their middle: x right, y down, z forward.
+/// Builds cars of a few shapes. The frame of a car lies on the ground below its centre: x right, y down, z forward.
 class CarFactory {
  public:
   CarFactory(SceneBuilder* builder, bool night, Random* random) : builder_(*builder), night_(night) {
@@ -32,9 +33,9 @@ class CarFactory {
     shadow_ = builder_.Add(PaintCarShadow());
   }
 
-  // `pose` of the car in the frame of `body`.
-  void Build(const geometry::SE3& pose, int body, Random* random) {
-    pose_ = pose;
+  /// Adds a car to `body`.
+  void Build(const geometry::SE3& T_body_car, int body, Random* random) {
+    T_body_car_ = T_body_car;
     body_ = body;
     tone_ = random->Chance(0.5) ? random->Uniform(0.15, 0.5) : random->Uniform(0.6, 1.25);
     const int shape = random->Index(static_cast<int>(sides_.size()));
@@ -44,7 +45,7 @@ class CarFactory {
           {side, 0.0, 0.0});
     }
     for (const double end : {-1.0, 1.0}) {
-      Add({end * 0.5 * kWidth, -kBonnet, end * front}, {-end * kWidth, 0.0, 0.0}, {0.0, 0.65, 0.0},
+      Add({end * 0.5 * kWidth, -kBonnetHeight, end * front}, {-end * kWidth, 0.0, 0.0}, {0.0, 0.65, 0.0},
           ends_[end > 0.0 ? 1 : 0], tone_, {0.0, 0.0, end});
     }
     AddTop(kRears[shape]);
@@ -58,13 +59,14 @@ class CarFactory {
 
   void Add(const Eigen::Vector3d& origin, const Eigen::Vector3d& u, const Eigen::Vector3d& v, int texture, double tone,
            const Eigen::Vector3d& outwards, double emission = 0.0) {
-    Look look = builder_.Whole(texture, tone);
-    look.body = body_;
-    look.emission = emission;
-    builder_.Add(pose_ * origin, pose_.rotation() * u, pose_.rotation() * v, look, pose_.rotation() * outwards);
+    Material material = builder_.WholeTexture(texture, tone);
+    material.body = body_;
+    material.emission = emission;
+    builder_.Add(T_body_car_ * origin, T_body_car_.rotation() * u, T_body_car_.rotation() * v, material,
+                 T_body_car_.rotation() * outwards);
   }
 
-  // Bonnet, wind screen, roof, rear window and boot along the outline of the side.
+  /// Adds bonnet, wind screen, roof, rear window and boot along the outline of the side.
   void AddTop(double rear) {
     const double roof_front = 130.0 + 104.0;
     const double roof_rear = rear - 104.0 / 2.2;
@@ -73,12 +75,12 @@ class CarFactory {
       double u, height;
       int texture;  // of the piece from here to the next
     };
-    const std::array<Corner, 6> outline = {{{2.0, kBonnet - 0.03, paint_},
-                                            {130.0, kBonnet, glass_},
+    const std::array<Corner, 6> outline = {{{2.0, kBonnetHeight - 0.03, paint_},
+                                            {130.0, kBonnetHeight, glass_},
                                             {roof_front, roof, paint_},
                                             {roof_rear, roof, glass_},
-                                            {rear, kBonnet, paint_},
-                                            {510.0, kBonnet - 0.02, paint_}}};
+                                            {rear, kBonnetHeight, paint_},
+                                            {510.0, kBonnetHeight - 0.02, paint_}}};
     for (std::size_t i = 0; i + 1 < outline.size(); ++i) {
       const auto point = [&](const Corner& corner) {
         return Eigen::Vector3d(-0.5 * kWidth, -corner.height, 0.5 * kLength - corner.u * kTexelLength);
@@ -104,75 +106,75 @@ class CarFactory {
   int paint_ = 0;
   int glass_ = 0;
   int shadow_ = 0;
-  geometry::SE3 pose_;
+  geometry::SE3 T_body_car_;
   int body_ = 0;
   double tone_ = 1.0;
 };
 
-// Stands on the road at this place, heading along it or back.
-geometry::SE3 CarPose(const StreetPlan& plan, double distance, double lateral, bool back) {
-  const Eigen::Vector3d forward = (back ? -1.0 : 1.0) * plan.Forward(distance);
-  const Eigen::Vector3d right = (back ? -1.0 : 1.0) * plan.Right(distance);
+/// T_world_car of a car on the road that faces along it or against it.
+geometry::SE3 CarPose(const StreetPlan& plan, double distance, double lateral, bool oncoming) {
+  const Eigen::Vector3d forward = (oncoming ? -1.0 : 1.0) * plan.Forward(distance);
+  const Eigen::Vector3d right = (oncoming ? -1.0 : 1.0) * plan.Right(distance);
   Eigen::Matrix3d axes;
   axes << right, forward.cross(right), forward;
-  return {Eigen::Quaterniond(axes), plan.At(distance, lateral, 0.0)};
+  return {Eigen::Quaterniond(axes), plan.PointAt(distance, lateral, 0.0)};
 }
 
 }  // namespace
 
-void AddParkedCars(const StreetTask& task) {
-  Random random(task.seed, kParkedStream);
-  const StreetPlan& plan = task.plan;
+void AddParkedCars(const StreetContext& context) {
+  Random random(context.seed, kParkedStream);
+  const StreetPlan& plan = context.plan;
   const double length = plan.end() - plan.begin();
-  const int count = static_cast<int>(std::lround(task.options.parked_cars_per_100_m * length / 100.0));
+  const int count = static_cast<int>(std::lround(context.options.parked_cars_per_100_m * length / 100.0));
   if (count == 0 || plan.layout().parking_m < kWidth + 0.2) return;
-  CarFactory cars(&task.builder, task.night, &random);
+  CarFactory cars(&context.builder, context.night, &random);
   for (const int side : {-1, 1}) {
     const int on_side = side < 0 ? count / 2 : count - count / 2;
-    // One to a slot that is long enough, so that none stand in each other.
+    // One car a slot, so that no two overlap.
     const double slot = std::max(length / std::max(1, on_side), kLength + 0.6);
     for (int i = 0; i < on_side && (i + 1) * slot <= length; ++i) {
       const double s = plan.begin() + i * slot + 0.5 * kLength + random.Uniform(0.3, slot - kLength);
       const double lateral = plan.kerb(side) - side * (0.5 * kWidth + 0.1 + random.Uniform(0.0, 0.1));
-      if (!plan.IsClearOfCrossings(s - 0.5 * kLength, s + 0.5 * kLength, 4.0)) continue;
+      if (!plan.IsClearOfJunctions(s - 0.5 * kLength, s + 0.5 * kLength, 4.0)) continue;
       cars.Build(CarPose(plan, s, lateral, side < 0), 0, &random);
     }
   }
 }
 
-void AddOncomingCars(const StreetTask& task) {
-  Random random(task.seed, kOncomingStream);
-  const StreetOptions& options = task.options;
-  const double from = task.plan.begin();
-  const double length = task.plan.end() - from;
+void AddOncomingCars(const StreetContext& context) {
+  Random random(context.seed, kOncomingStream);
+  const StreetOptions& options = context.options;
+  const double from = context.plan.begin();
+  const double length = context.plan.end() - from;
   const int count = static_cast<int>(std::lround(options.oncoming_cars_per_100_m * length / 100.0));
   if (count == 0) return;
-  CarFactory cars(&task.builder, task.night, &random);
+  CarFactory cars(&context.builder, context.night, &random);
   const double spacing = length / count;
   const double first = random.Uniform(0.0, length);
   for (int i = 0; i < count; ++i) {
     const double start = first + (i + random.Uniform(-0.3, 0.3)) * spacing;
     Body body;
-    body.T_world_body = [=, plan = task.shared_plan, speed = options.oncoming_car_speed_m_s](TimeNs t) {
+    body.T_world_body = [=, plan = context.shared_plan, speed = options.oncoming_car_speed_m_s](TimeNs t) {
       const double passed = std::fmod(start - speed * ToSeconds(t), length);
       return CarPose(*plan, from + (passed < 0.0 ? passed + length : passed), -0.5 * plan->layout().lanes_m, true);
     };
-    cars.Build(geometry::SE3(), task.builder.AddBody(std::move(body)), &random);
+    cars.Build(geometry::SE3(), context.builder.AddBody(std::move(body)), &random);
   }
 }
 
-void AddCarsAhead(const StreetTask& task, const std::function<double(TimeNs)>& camera_distance_m) {
-  if (task.options.cars_ahead == 0 || !camera_distance_m) return;
-  Random random(task.seed, kAheadStream);
-  CarFactory cars(&task.builder, task.night, &random);
-  for (int i = 1; i <= task.options.cars_ahead; ++i) {
+void AddCarsAhead(const StreetContext& context, const std::function<double(TimeNs)>& camera_distance_m) {
+  if (context.options.cars_ahead == 0 || !camera_distance_m) return;
+  Random random(context.seed, kAheadStream);
+  CarFactory cars(&context.builder, context.night, &random);
+  for (int i = 1; i <= context.options.cars_ahead; ++i) {
     const double gap = kStandingGap * i + random.Uniform(0.0, 2.0);
     const TimeNs headway = FromSeconds(kHeadway * i);
     Body body;
-    body.T_world_body = [=, plan = task.shared_plan](TimeNs t) {
+    body.T_world_body = [=, plan = context.shared_plan](TimeNs t) {
       return CarPose(*plan, camera_distance_m(t + headway) + gap, 0.0, false);
     };
-    cars.Build(geometry::SE3(), task.builder.AddBody(std::move(body)), &random);
+    cars.Build(geometry::SE3(), context.builder.AddBody(std::move(body)), &random);
   }
 }
 
