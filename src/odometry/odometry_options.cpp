@@ -101,7 +101,7 @@ void Register(Parameters& parameters, FrameHandlerOptions& options) {
 
 void Register(Parameters& parameters, CovarianceOptions& options) {
   parameters.Add("odometry.covariance.variance_inflation", &options.variance_inflation, 1, 1000,
-                 "factor on the poses' variances: the number of tracks whose errors are alike");
+                 "factor on the poses' variances: the number of tracks that share their errors");
   parameters.Add("odometry.covariance.rotation_bias_ratio", &options.rotation_bias_ratio, 0, 1,
                  "standard deviation of the rotation common to all tracks about each axis, over their motion");
   parameters.Alias("odometry.covariance.alike", "odometry.covariance.variance_inflation");

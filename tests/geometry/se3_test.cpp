@@ -16,7 +16,7 @@ Vector6d RandomTwist(std::mt19937* random, double angle) {
   return xi;
 }
 
-TEST(SE3, LogUndoesExpAtEveryAngle) {
+TEST(SE3, LogInvertsExpAtEveryAngle) {
   std::mt19937 random(1);
   for (const double angle : {1e-12, 1e-7, 1e-5, 1e-3, 0.5, 2.0, 3.1}) {
     const Vector6d xi = RandomTwist(&random, angle);
@@ -67,7 +67,7 @@ TEST(SE3, AdjointTakesATwistAcrossAMotion) {
   }
 }
 
-TEST(SE3, InterpolatesAlongTheShortWay) {
+TEST(SE3, InterpolatesAlongTheShorterArc) {
   const SE3 a;
   const SE3 b(Eigen::Quaterniond(Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ())), Eigen::Vector3d(2, 0, 0));
   const SE3 half = Interpolate(a, b, 0.5);

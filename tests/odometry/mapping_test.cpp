@@ -24,7 +24,7 @@ Bootstrap FirstMap(const std::vector<Frame>& frames, const BootstrapOptions& opt
   for (int i = 0; i < static_cast<int>(frames.size()); ++i) {
     if (auto bootstrap = bootstrapper.Add(i)) return *bootstrap;
   }
-  throw std::runtime_error(bootstrapper.obstacle());
+  throw std::runtime_error(bootstrapper.failure_reason());
 }
 
 TEST(Bootstrapper, FindsForwardMotion) {
@@ -42,7 +42,7 @@ TEST(Bootstrapper, FindsForwardMotion) {
   }
 }
 
-TEST(Bootstrapper, TwoFramesMakeAFirstMapAlsoWithoutRefinement) {
+TEST(Bootstrapper, BuildsAMapWithoutRefinement) {
   const auto drive = MakeDrive({.seconds = 2.0, .stop = false, .bumps = false});
   const auto frames = BuildFrames(drive.tracks, DriveCamera());
   const Bootstrap refined = FirstMap(frames);
@@ -53,7 +53,7 @@ TEST(Bootstrapper, TwoFramesMakeAFirstMapAlsoWithoutRefinement) {
   EXPECT_NE(plain.T_cam_world.back().translation(), refined.T_cam_world.back().translation());
 }
 
-/// Frames of a drive with their true poses, as the pose thread would send them.
+/// The messages of the pose thread for a drive with its true poses.
 std::vector<FrameMessage> Messages(int count) {
   const auto drive = MakeDrive({.seconds = 3.0, .stop = false, .seed = 3});
   const auto frames = BuildFrames(drive.tracks, DriveCamera());
@@ -72,12 +72,10 @@ std::vector<FrameMessage> Messages(int count) {
     FrameMessage message;
     message.index = i;
     message.frame = frames[i];
-    message.reference = key_frame;
-    message.T_cam_reference = pose * T_key_world.Inverse();
-    message.new_segment = place == 0;
-    message.key_frame = place % 5 == 0;
-    if (message.new_segment) message.points = bootstrap.points;
-    if (message.key_frame) {
+    message.pose = {key_frame, pose * T_key_world.Inverse()};
+    message.is_key_frame = place % 5 == 0;
+    if (place == 0) message.new_map = bootstrap.points;
+    if (message.is_key_frame) {
       ++key_frame;
       T_key_world = pose;
     }
@@ -86,11 +84,11 @@ std::vector<FrameMessage> Messages(int count) {
   return messages;
 }
 
-TEST(Mapper, GrowsTheMapAndDropsWhatFramesContradict) {
+TEST(Mapper, GrowsTheMapAndRemovesContradictedPoints) {
   Mapper mapper({}, 1.0 / 226.0);
   auto messages = Messages(60);
-  const std::size_t initial = messages[0].points.size();
-  const std::int64_t victim = messages[0].points[0].track;
+  const std::size_t initial = messages[0].new_map->size();
+  const std::int64_t victim = messages[0].new_map->front().track;
   bool removed = false;
   for (auto& message : messages) {
     if (mapper.map().Find(victim)) message.outliers.push_back(victim);
@@ -103,12 +101,12 @@ TEST(Mapper, GrowsTheMapAndDropsWhatFramesContradict) {
   EXPECT_EQ(mapper.map().key_frames.size(), 12u);
 }
 
-TEST(Mapper, OldKeyFramesBringPointsEarlier) {
+TEST(Mapper, OldKeyFramesMakeSeedsConvergeEarlier) {
   std::vector<std::size_t> points;
   for (const int old_key_frames : {0, 6}) {
     MapperOptions options;
     options.old_key_frames = old_key_frames;
-    options.depth_filter.max_age = 1;  // most seeds are given up and sown again
+    options.depth_filter.max_age = 1;  // most seeds are dropped and created again
     options.depth_filter.convergence = 500.0;
     Mapper mapper(options, 1.0 / 226.0);
     points.push_back(0);
@@ -117,10 +115,10 @@ TEST(Mapper, OldKeyFramesBringPointsEarlier) {
       points.back() += mapper.map().points.size();
     }
   }
-  EXPECT_GT(points[1], points[0]);  // sums over the frames
+  EXPECT_GT(points[1], points[0]);  // summed over the frames
 }
 
-TEST(MappingThread, GivesTheSameUpdatesAsWithoutAThread) {
+TEST(MappingThread, UpdatesDoNotDependOnTheThread) {
   const auto messages = Messages(40);
   std::vector<std::vector<MapUpdate>> runs;
   for (const bool threaded : {false, true}) {

@@ -5,13 +5,13 @@
 
 namespace evo::odometry {
 
-/// Whether the tracks come in frames: most sightings are at stamps that have `least` or more. Fewer than the usual
-/// eight are no frame that a pose could be estimated from. `tracks` in order of time.
-bool AreSynchronous(const events::Tracks& tracks, int least = 8);
+/// Whether the tracks come in frames: most observations share their stamp with at least `min_features` of them. A pose
+/// cannot be estimated reliably from fewer than the default. `tracks` in order of time.
+bool AreSynchronous(const events::Tracks& tracks, int min_features = 8);
 
-/// Asynchronous tracks at common stamps, `frame_interval_s` apart from the first sighting on. A position is the value
-/// of the straight line fitted to the track's sightings near the stamp, or linear interpolation where there are too
-/// few; never an extrapolation. `tracks` in order of time; so is the result.
+/// Resamples asynchronous tracks at common stamps, `frame_interval_s` apart from the first observation on. A position
+/// is the value of a line fitted to the track's observations within `fit_window_s` of the stamp, or the linear
+/// interpolation if there are too few; nothing is extrapolated. `tracks` and result in order of time.
 events::Tracks Resample(const events::Tracks& tracks, const ResamplingOptions& options);
 
 }  // namespace evo::odometry

@@ -11,45 +11,50 @@
 
 namespace evo::odometry {
 
-/// A first map: the world is the camera of frame `first`.
+/// A first map. Its world is the camera of frame `first`.
 struct Bootstrap {
-  int first = 0;  ///< index of the frame
-  int last = 0;
-  std::vector<geometry::SE3> T_cam_world;  ///< of the frames first ... last
+  int first = 0;                           ///< index of the first frame
+  int last = 0;                            ///< index of the last frame
+  std::vector<geometry::SE3> T_cam_world;  ///< poses of the frames first ... last
   std::vector<Point> points;
 };
 
-/// Finds two frames whose relative motion the eight-point algorithm can tell (equations 9-13) and makes the first map
-/// of them and the frames between. Tries the oldest frame that it holds against the present one as the image moves on.
+/// Finds two frames whose relative motion the eight-point algorithm determines (D. Zhu, equations 9-13) and builds the
+/// first map from them and the frames between. The candidates for the first frame are frames some image motion apart;
+/// the oldest is paired with each new frame until it succeeds or is too far away.
 class Bootstrapper {
  public:
-  /// `frames` outlives this object; `focal_px` turns pixels to units on the plane z = 1.
+  /// `frames` outlives this object; `focal_px` converts pixels to units of the normalized plane z = 1.
   Bootstrapper(const BootstrapOptions& options, const std::vector<Frame>& frames, double focal_px);
 
-  /// Takes frame `index` into account; the first map as soon as there is one.
+  /// Adds frame `index`. Returns the first map as soon as one can be built.
   std::optional<Bootstrap> Add(int index);
-  /// Starts anew with the next frame.
+  /// Forgets all frames added so far.
   void Reset();
 
   /// Why there is no map yet, for the user.
-  const std::string& obstacle() const { return obstacle_; }
+  const std::string& failure_reason() const { return failure_reason_; }
 
  private:
-  std::optional<Bootstrap> Try(int first, int last);
-  std::optional<Bootstrap> FromMotion(int first, int last, const std::vector<FeaturePair>& pairs,
-                                      const geometry::SE3& T_2_1, const std::vector<bool>& inliers);
-  bool TrackBetween(Bootstrap* bootstrap) const;
-  bool Refine(Bootstrap* bootstrap) const;
-  /// Of the points' `parallaxes`, rad; refuses if not.
-  bool HasParallax(const std::vector<double>& parallaxes);
-  bool Refuse(const std::string& why);
+  std::optional<Bootstrap> TryPair(int first, int last);
+  std::optional<Bootstrap> BuildMap(int first, int last, const std::vector<FeaturePair>& pairs,
+                                    const geometry::SE3& T_2_1, const std::vector<bool>& inliers);
+  /// Estimates the poses of the frames after the first against the points. False if one of them is not accepted.
+  bool TrackFrames(Bootstrap* bootstrap) const;
+  /// Adjusts points and some of the frames. False if the residuals stay large.
+  bool RefineMap(Bootstrap* bootstrap) const;
+  /// Whether the median of the points' parallaxes (rad) is large enough; records a failure otherwise.
+  bool CheckParallax(const std::vector<double>& parallaxes);
+  /// Records why there is no map; returns false.
+  bool Fail(std::string reason);
+  void DropOldestCandidate();
 
   BootstrapOptions options_;
   const std::vector<Frame>& frames_;
   double focal_px_;
-  std::deque<int> held_;
-  double next_try_px_ = 0.0;
-  std::string obstacle_;
+  std::deque<int> candidates_;          // for the first frame, in order
+  double next_try_disparity_px_ = 0.0;  // of the oldest candidate and the new frame
+  std::string failure_reason_;
 };
 
 }  // namespace evo::odometry

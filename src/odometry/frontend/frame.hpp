@@ -9,26 +9,26 @@
 
 namespace evo::odometry {
 
-/// All features seen at one instant and the pose of the camera then.
+/// The features of one instant and the pose of the camera.
 struct Frame {
   TimeNs t = 0;
-  geometry::SE3 T_cam_world;      ///< meaningful once the frame has been tracked
+  geometry::SE3 T_cam_world;      ///< valid once the frame has been tracked
   std::vector<Feature> features;  ///< in order of their tracks' ids
 
-  /// Null if the track is not seen in this frame.
+  /// The feature of a track; null if the frame does not observe it.
   const Feature* Find(std::int64_t track) const;
 };
 
-/// A track seen in two frames.
+/// A track's features in two frames.
 struct FeaturePair {
   const Feature* first;
   const Feature* second;
 };
 
-/// The tracks that two frames share; the pointers live as long as the frames.
+/// Pairs the features of the tracks that both frames observe. The pointers live as long as the frames.
 std::vector<FeaturePair> Match(const Frame& first, const Frame& second);
 
-/// Median image motion of the shared tracks in raw pixels (first order); 0 if there are none.
+/// The median image motion of the pairs in raw pixels (to first order); 0 for no pairs.
 double MedianDisparity(const std::vector<FeaturePair>& pairs);
 
 }  // namespace evo::odometry

@@ -8,9 +8,8 @@
 
 namespace evo::odometry {
 
-/// One frame a stamp, its features undistorted. `tracks` in order of time, then of id.
-/// Throws Error (kInput) when more than a few sightings lie off the sensor or outside the lens model: calibration and
-/// tracks do not belong together.
+/// Groups observations of the same stamp into frames and undistorts them. `tracks` in order of time, then of id.
+/// Throws Error (kInput) if more than 2 % of the observations lie off the sensor or outside the lens model.
 std::vector<Frame> BuildFrames(const events::Tracks& tracks, const geometry::Camera& camera);
 
 }  // namespace evo::odometry

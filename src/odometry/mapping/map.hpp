@@ -9,20 +9,21 @@
 
 namespace evo::odometry {
 
-/// The points of the map by their track's id, and the key frames in order of time.
+/// The points by the id of their track, and the key frames in order of time.
 struct Map {
   std::map<std::int64_t, Point> points;
   std::vector<Frame> key_frames;
 
+  /// The point of a track; null if there is none.
   const Point* Find(std::int64_t track) const;
 };
 
-/// Depths in a camera of the map's points that a frame sees.
+/// Depths of map points in a camera.
 struct SceneDepth {
   double median = 0.0;
-  double near = 0.0;  ///< the 5 % nearest are nearer
+  double near = 0.0;  ///< 5th percentile
 };
-/// `depths` are positive; zeros if it is empty.
+/// `depths` are positive; zeros for none.
 SceneDepth MeasureSceneDepth(std::vector<double> depths);
 
 }  // namespace evo::odometry

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -12,57 +13,63 @@
 
 namespace evo::odometry {
 
-/// A tracked frame on its way from the pose thread to the depth thread.
-struct FrameMessage {
-  int index = 0;       ///< of the frame
-  Frame frame;         ///< its own pose is not used
-  int reference = -1;  ///< key frame that the pose is relative to; -1: the pose is in the world
-  geometry::SE3 T_cam_reference;
-  bool key_frame = false;    ///< becomes the next key frame, numbered from 0 without gaps
-  bool new_segment = false;  ///< the map starts anew with `points`
-  std::vector<Point> points;
-  std::vector<std::int64_t> inliers;   ///< tracks whose point agreed with the frame
-  std::vector<std::int64_t> outliers;  ///< tracks whose point contradicted it
+/// A pose relative to a key frame.
+struct KeyFramePose {
+  int key_frame = -1;  ///< number of the key frame; -1: the world
+  geometry::SE3 T_cam_key;
 };
 
-/// What a frame has changed in the map, on its way back.
+/// A tracked frame on its way from the pose thread to the depth thread.
+struct FrameMessage {
+  int index = 0;                              ///< of the frame
+  Frame frame;                                ///< without its pose
+  KeyFramePose pose;                          ///< of the frame
+  bool is_key_frame = false;                  ///< becomes the next key frame; these are numbered from 0 without gaps
+  std::optional<std::vector<Point>> new_map;  ///< replaces all points at the beginning of a segment
+  std::vector<std::int64_t> inliers;          ///< tracks whose points agree with the frame
+  std::vector<std::int64_t> outliers;         ///< tracks whose points contradict the frame
+};
+
+/// The changes of the map by a frame, on their way back.
 struct MapUpdate {
   int index = 0;                                                 ///< of the frame
-  std::vector<std::pair<std::int64_t, Eigen::Vector3d>> points;  ///< new or moved, world
+  std::vector<std::pair<std::int64_t, Eigen::Vector3d>> points;  ///< new or moved: track, world position
   std::vector<std::int64_t> removed;                             ///< tracks
   std::vector<std::pair<int, geometry::SE3>> key_frames;         ///< new or moved: number, T_cam_world
 };
 
-/// The depth thread's work: owns the map, measures depths, adds converged points, drops points that frames contradict,
-/// refines the last key frames together with their points.
+/// The depth thread's work. It owns the map, updates the depth filter, inserts converged points, removes points that
+/// frames contradict, and adjusts the last key frames with their points.
 class Mapper {
  public:
-  /// `px_angle` rad is the angle of one pixel.
-  Mapper(const MapperOptions& options, double px_angle);
+  /// `pixel_angle` is the angle of one pixel, rad.
+  Mapper(const MapperOptions& options, double pixel_angle);
 
   MapUpdate Process(const FrameMessage& message);
 
   const Map& map() const { return map_; }
-  /// Points of the segments before the present one.
-  const std::vector<Point>& finished() const { return finished_; }
+  /// The points of the segments before the current one.
+  const std::vector<Point>& finished_points() const { return finished_points_; }
 
  private:
   void StartSegment(const FrameMessage& message, MapUpdate* update);
-  void Judge(const FrameMessage& message, MapUpdate* update);
-  void MeasureDepths(const Frame& frame);
-  void AddConverged(MapUpdate* update);
+  void UpdateCounts(const FrameMessage& message);
+  void RemoveOutliers(const std::vector<std::int64_t>& tracks, MapUpdate* update);
+  void UpdateDepths(const Frame& frame);
+  void InsertConverged(MapUpdate* update);
   void AddKeyFrame(const Frame& frame, MapUpdate* update);
-  void SowSeeds(const Frame& frame);
+  /// Creates a seed for every feature without point and seed, and updates it with the key frames that observe it.
+  void CreateSeeds(const Frame& frame);
   void RefineWindow(MapUpdate* update);
-  SceneDepth DepthOfScene(const Frame& frame) const;
+  SceneDepth DepthInFrame(const Frame& frame) const;
 
   MapperOptions options_;
   Map map_;
   DepthFilter filter_;
-  std::vector<Point> finished_;
+  std::vector<Point> finished_points_;
   std::vector<Seed> converged_;
-  Frame measured_;         // the last frame that the depth filter has used
-  int segment_begin_ = 0;  // its first key frame
+  Frame last_measured_;    // the last frame that has updated the depth filter
+  int segment_begin_ = 0;  // number of the segment's first key frame
 };
 
 }  // namespace evo::odometry

@@ -11,20 +11,21 @@
 
 namespace evo::odometry {
 
-/// Runs a mapper beside the pose thread: a queue of frames in, a queue of updates out, first in first out, nothing ever
-/// dropped. Everything crosses by value. What Collect() returns depends only on what was posted, never on timing.
+/// Runs a mapper beside the pose thread (D. Zhu, section "Parallel tracking and mapping"): a first-in-first-out queue
+/// of frames to it and one of map updates back. Nothing is dropped and everything is copied. The result of Collect()
+/// depends only on the posted messages, never on timing.
 class MappingThread {
  public:
-  /// Without `threaded` the work is done inside Post(). The mapper belongs to this object until it is destroyed.
+  /// Without `threaded`, Post() does the work. The mapper belongs to this object until its destruction.
   MappingThread(Mapper* mapper, bool threaded);
   ~MappingThread();
   MappingThread(const MappingThread&) = delete;
   MappingThread& operator=(const MappingThread&) = delete;
 
-  /// Messages come in order of their frames' indices.
+  /// Messages are posted in order of their frames' indices.
   void Post(FrameMessage message);
-  /// Waits for the updates of all posted frames up to `index` and hands over those not yet collected.
-  /// Rethrows what the mapper has thrown.
+  /// Waits for the updates of all posted frames up to `index` and returns those not yet collected.
+  /// Rethrows the mapper's exceptions.
   std::vector<MapUpdate> Collect(int index);
 
  private:
@@ -34,9 +35,9 @@ class MappingThread {
   std::mutex mutex_;
   std::condition_variable posted_;
   std::condition_variable done_;
-  std::deque<FrameMessage> messages_;  // guarded by mutex_, like all below
+  std::deque<FrameMessage> messages_;  // guarded by mutex_, as all below
   std::deque<MapUpdate> updates_;
-  std::deque<int> outstanding_;  // indices of frames posted and not collected
+  std::deque<int> outstanding_;  // indices of the frames posted and not collected
   std::exception_ptr error_;
   bool stop_ = false;
   std::thread thread_;
