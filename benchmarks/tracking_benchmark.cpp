@@ -5,7 +5,7 @@
 
 #include "tracking/detection/corner_detector.hpp"
 #include "tracking/detection/flow_field.hpp"
-#include "tracking/patch/em_affine.hpp"
+#include "tracking/patch/em_alignment.hpp"
 #include "tracking/patch/em_flow.hpp"
 #include "tracking/synthetic_events.hpp"
 
@@ -48,14 +48,14 @@ events::LocalEvents GatherPatch(double radius) {
   return events;
 }
 
-DensityMap MakeTemplate(const events::LocalEvents& events, int radius) {
-  DensityMap map(radius, 2);
+EventHistogram MakeTemplate(const events::LocalEvents& events, int radius) {
+  EventHistogram histogram(radius, 2);
   const Eigen::Vector2f v = kFlow.cast<float>();
   for (std::size_t i = 0; i < events.size(); ++i) {
-    map.Vote(events.x[i] - v.x() * events.dt[i], events.y[i] - v.y() * events.dt[i], map.PlaneOf(events.polarity[i]),
-             1.0f);
+    histogram.Vote(events.x[i] - v.x() * events.dt[i], events.y[i] - v.y() * events.dt[i],
+                   histogram.PlaneOf(events.polarity[i]), 1.0f);
   }
-  return map;
+  return histogram;
 }
 
 void CountEvents(benchmark::State& state, std::size_t events) {
@@ -83,39 +83,39 @@ void Gather(benchmark::State& state) {
 }
 BENCHMARK(Gather);
 
-/// Arguments: radius of the map in cells, sigma in tenths of a cell.
-void BuildField(benchmark::State& state) {
+/// Arguments: radius of the histogram in cells, sigma in tenths of a cell.
+void BuildTable(benchmark::State& state) {
   const auto radius = static_cast<int>(state.range(0));
-  const DensityMap map = MakeTemplate(GatherPatch(radius), radius);
-  AssociationField field;
+  const EventHistogram histogram = MakeTemplate(GatherPatch(radius), radius);
+  AssociationTable table;
   for (auto _ : state) {
-    field.Build(map, 0.1 * static_cast<double>(state.range(1)), 0.2);
-    benchmark::DoNotOptimize(field.At(0.0f, 0.0f, 0));
+    table.Build(histogram, 0.1 * static_cast<double>(state.range(1)), 0.2);
+    benchmark::DoNotOptimize(table.Interpolate(0.0f, 0.0f, 0));
   }
 }
-BENCHMARK(BuildField)->ArgNames({"radius", "sigma_tenths"})->Args({12, 10})->Args({12, 25})->Args({17, 10});
+BENCHMARK(BuildTable)->ArgNames({"radius", "sigma_tenths"})->Args({12, 10})->Args({12, 25})->Args({17, 10});
 
-void OwnMoments(benchmark::State& state) {
-  const DensityMap map = MakeTemplate(GatherPatch(kPatchRadius), 12);
-  AssociationField field;
-  field.Build(map, 1.0, 0.2);
+void ComputeSelfBias(benchmark::State& state) {
+  const EventHistogram histogram = MakeTemplate(GatherPatch(kPatchRadius), 12);
+  AssociationTable table;
+  table.Build(histogram, 1.0, 0.2);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(field.OwnMoments(map, 1.1 * Eigen::Matrix2d::Identity(), kPatchRadius));
+    benchmark::DoNotOptimize(table.ComputeSelfBias(histogram, 1.1 * Eigen::Matrix2d::Identity(), kPatchRadius));
   }
 }
-BENCHMARK(OwnMoments);
+BENCHMARK(ComputeSelfBias);
 
 void Align(benchmark::State& state) {
   const events::LocalEvents events = GatherPatch(kPatchRadius);
-  const DensityMap map = MakeTemplate(events, 12);
-  AssociationField field;
-  field.Build(map, 1.0, 0.2);
+  const EventHistogram histogram = MakeTemplate(events, 12);
+  AssociationTable table;
+  table.Build(histogram, 1.0, 0.2);
   AlignmentOptions options;
   options.half_window_s = ToSeconds(kHalfWindow);
-  options.own_moments = field.OwnMoments(map, Eigen::Matrix2d::Identity(), kPatchRadius);
+  options.self_bias = table.ComputeSelfBias(histogram, Eigen::Matrix2d::Identity(), kPatchRadius);
   for (auto _ : state) {
     PatchMotion motion{{0.8, -0.5}, kFlow + Eigen::Vector2d(10.0, 5.0), Eigen::Matrix2d::Identity()};
-    AlignToTemplate(events, field, 2, options, true, &motion);
+    AlignToTemplate(events, table, 2, options, true, &motion);
     benchmark::DoNotOptimize(motion);
   }
   CountEvents(state, events.size());

@@ -97,19 +97,19 @@ void FeatureTracker::Track(const events::EventHistory& history, TimeNs t) {
   features_.erase(features_.begin() + static_cast<std::ptrdiff_t>(kept), features_.end());
 }
 
-void FeatureTracker::AlignAll(const events::EventHistory& history, TimeNs t, const Jolt& jolt) {
+void FeatureTracker::AlignAll(const events::EventHistory& history, TimeNs t, const RotationCorrection& jolt) {
   if (alignments_.size() < features_.size()) alignments_.resize(features_.size());
   pool_->ForEach(
       features_.size(), [&](std::size_t i) { Align(history, t, jolt, features_[i], &alignments_[i]); }, 4);
 }
 
 void FeatureTracker::FollowJolt(const events::EventHistory& history, TimeNs t) {
-  Jolt jolt;
+  RotationCorrection jolt;
   for (int i = 0; i < kJoltPasses; ++i) {
-    const Jolt further = FindJolt(UnexpectedMotions());
-    if (further.motion_px <= kJoltPx) return;
-    jolt.turn += further.turn;
-    jolt.turn_rate += further.turn_rate;
+    const RotationCorrection further = EstimateRotationCorrection(PredictionResiduals());
+    if (further.rms_motion_px <= kJoltPx) return;
+    jolt.rotation += further.rotation;
+    jolt.angular_velocity += further.angular_velocity;
     AlignAll(history, t, jolt);
   }
 }
@@ -121,54 +121,54 @@ std::vector<Eigen::Vector2d> FeatureTracker::FilteredPositions(double step_s) {
     const bool is_found = alignment.state == FeatureAlignment::State::kFound;
     const Eigen::Vector2d now = alignment.Landed();
     steps.push_back(
-        {features_[i].filtered, now, is_found ? ego_motion_.InverseDepth({now, alignment.motion.flow}) : 0.0});
+        {features_[i].filtered, now, is_found ? ego_motion_.EstimateInverseDepth({now, alignment.motion.flow}) : 0.0});
   }
   if (options_.epipolar_filter && ego_motion_.known()) {
-    return epipolar_filter_.Filter(ego_motion_.motion(), ego_motion_.lens(), step_s, steps);
+    return epipolar_filter_.Filter(ego_motion_.motion(), ego_motion_.jacobians(), step_s, steps);
   }
   std::vector<Eigen::Vector2d> positions;
-  for (const auto& step : steps) positions.push_back(step.now);
+  for (const auto& step : steps) positions.push_back(step.measured);
   return positions;
 }
 
-std::vector<UnexpectedMotion> FeatureTracker::UnexpectedMotions() const {
-  std::vector<UnexpectedMotion> motions;
+std::vector<PredictionResidual> FeatureTracker::PredictionResiduals() const {
+  std::vector<PredictionResidual> motions;
   for (std::size_t i = 0; i < features_.size(); ++i) {
     const FeatureAlignment& alignment = alignments_[i];
     if (alignment.state != FeatureAlignment::State::kFound) continue;
-    motions.push_back({alignment.by_rotation, alignment.motion.offset, UnexpectedFlow(alignment)});
+    motions.push_back({alignment.J_pixel_rotation, alignment.motion.offset, UnexpectedFlow(alignment)});
   }
   return motions;
 }
 
 TimeNs FeatureTracker::HalfWindowOf(const Eigen::Vector2d& flow) const {
   const TimeNs by_motion = HalfWindow(flow, options_.window_motion_px, options_);
-  const double acceleration_px_s2 = ego_motion_.lens().focal_px() * ego_motion_.turn_change();
+  const double acceleration_px_s2 = ego_motion_.jacobians().focal_px() * ego_motion_.typical_angular_acceleration();
   const double straight_s = std::sqrt(2.0 * options_.window_curvature_px / std::max(acceleration_px_s2, 1.0));
   return std::min(by_motion, FromSeconds(std::max(straight_s, 0.5 * options_.min_window_s)));
 }
 
 PatchMotion FeatureTracker::Predict(const TrackedFeature& feature, double step_s, Eigen::Vector2d* position) const {
-  const PatchFlow patch = ego_motion_.At({feature.position, feature.flow}, feature.slope);
-  const Eigen::Vector2d flow = ego_motion_.AtRest({feature.position, feature.flow});
+  const PatchFlow patch = ego_motion_.PredictPatchFlow({feature.position, feature.flow}, feature.slope);
+  const Eigen::Vector2d flow = ego_motion_.ProjectToEpipolarLine({feature.position, feature.flow});
   PatchMotion motion;
   motion.flow = flow + step_s * patch.acceleration;
-  motion.linear = (Eigen::Matrix2d::Identity() + step_s * patch.rate) * feature.linear;
-  motion.perspective = feature.perspective - step_s * feature.linear.transpose() * patch.bend;
-  motion.rate = patch.rate;
-  motion.bend = patch.bend;
+  motion.linear = (Eigen::Matrix2d::Identity() + step_s * patch.linear_rate) * feature.linear;
+  motion.perspective = feature.perspective - step_s * feature.linear.transpose() * patch.quadratic_rate;
+  motion.linear_rate = patch.linear_rate;
+  motion.quadratic_rate = patch.quadratic_rate;
   *position = feature.position + 0.5 * step_s * (flow + motion.flow);
   return motion;
 }
 
-void FeatureTracker::Align(const events::EventHistory& history, TimeNs t, const Jolt& jolt,
+void FeatureTracker::Align(const events::EventHistory& history, TimeNs t, const RotationCorrection& jolt,
                            const TrackedFeature& feature, FeatureAlignment* alignment) const {
   FeatureAlignment& a = *alignment;
   a.state = FeatureAlignment::State::kLost;
   a.start = Predict(feature, ToSeconds(t - *last_), &a.position);
-  a.by_rotation = ego_motion_.lens().At(a.position).by_rotation;
-  a.position += a.by_rotation * jolt.turn;
-  a.start.flow += a.by_rotation * jolt.turn_rate;
+  a.J_pixel_rotation = ego_motion_.jacobians().Lookup(a.position).J_pixel_rotation;
+  a.position += a.J_pixel_rotation * jolt.rotation;
+  a.start.flow += a.J_pixel_rotation * jolt.angular_velocity;
   const auto gather = [&] {
     history.Gather({t, a.position.x(), a.position.y(), a.start.flow.x(), a.start.flow.y(),
                     static_cast<double>(options_.patch_radius_px), a.half_window},
@@ -216,7 +216,7 @@ bool FeatureTracker::Advance(const FeatureAlignment& alignment, double step_s, T
         (motion.linear * start.linear.inverse() - Eigen::Matrix2d::Identity()) / step_s;
     feature->oddity.Add(motion.offset, unexpected_rate / (motion.flow.norm() + kSlowestPxS), alignment.stray_share);
     LearnSlope(unexpected_rate, feature);
-    feature->own_pull = alignment.own_pull;
+    feature->self_bias = alignment.self_bias;
     UpdateTemplate(alignment.events, motion, feature);
   } else {
     feature->flow = kSlowdown * start.flow;
@@ -234,8 +234,8 @@ bool FeatureTracker::IsInside(const Eigen::Vector2d& position) const {
 void FeatureTracker::LearnDepths(double step_s) {
   if (!ego_motion_.known()) return;
   for (auto& feature : features_) {
-    const double seen = ego_motion_.InverseDepth({feature.position, feature.flow});
-    const double expected = ego_motion_.Advanced(feature.inverse_depth, step_s);
+    const double seen = ego_motion_.EstimateInverseDepth({feature.position, feature.flow});
+    const double expected = ego_motion_.PropagateInverseDepth(feature.inverse_depth, step_s);
     const bool known = feature.inverse_depth > 0.0;
     feature.inverse_depth = known ? expected + std::max(kDepthGain, 1.0 / feature.frames) * (seen - expected) : seen;
   }
@@ -244,7 +244,7 @@ void FeatureTracker::LearnDepths(double step_s) {
       features_.size(),
       [&](std::size_t i) {
         if ((features_[i].id + features_[i].frames) % kSlopeFrames != 0) return;
-        const auto slope = SurfaceSlope(depths, depths[i]);
+        const auto slope = FitInverseDepthGradient(depths, depths[i]);
         if (slope) features_[i].slope = *slope;
       },
       4);
@@ -259,7 +259,7 @@ void FeatureTracker::WithdrawOdd() {
     if (feature.judged || feature.frames > kOldestWithdrawn || feature.oddity.frames() < kYouth) continue;
     feature.judged = true;
     young.push_back(&feature);
-    oddities.push_back(feature.oddity.Of(ego_motion_.motion().Away(ego_motion_.lens().At(feature.position))));
+    oddities.push_back(feature.oddity.Of(ego_motion_.motion().TranslationalFlow(ego_motion_.jacobians().Lookup(feature.position))));
   }
   const std::vector<bool> are_odd = oddity_judge_.AreOdd(oddities);
   for (std::size_t i = 0; i < young.size(); ++i) {
@@ -276,20 +276,20 @@ std::vector<DepthSample> FeatureTracker::Depths() const {
 }
 
 void FeatureTracker::LearnSlope(const Eigen::Matrix2d& unexpected_rate, TrackedFeature* feature) const {
-  feature->slope += kSlopeGain * ego_motion_.SlopeOf(feature->position, unexpected_rate);
+  feature->slope += kSlopeGain * ego_motion_.EstimateInverseDepthGradient(feature->position, unexpected_rate);
   const double steepest = kSteepest * feature->flow.norm();
   const double slope = feature->slope.norm();
   if (slope > steepest) feature->slope *= steepest / slope;
 }
 
 bool FeatureTracker::Fit(const TrackedFeature& feature, bool coarse_first, FeatureAlignment* alignment) const {
-  thread_local AssociationField field;
+  thread_local AssociationTable field;
   PatchMotion& motion = alignment->motion;
   motion = alignment->start;
   const auto radius = static_cast<double>(options_.patch_radius_px);
   const auto build = [&](double sigma_px) { field.Build(feature.events, sigma_px, options_.outlier_density_ratio); };
-  const auto own_pull = [&] { return field.OwnMoments(feature.events, motion.linear, radius); };
-  const auto align = [&](const PullMoments& own, int iterations, bool with_linear) {
+  const auto self_bias = [&] { return field.ComputeSelfBias(feature.events, motion.linear, radius); };
+  const auto align = [&](const SelfBias& own, int iterations, bool with_linear) {
     return AlignToTemplate(
         alignment->events, field, planes(),
         {iterations, radius, ToSeconds(alignment->half_window), options_.flow_prior, options_.affine_prior, own},
@@ -297,14 +297,14 @@ bool FeatureTracker::Fit(const TrackedFeature& feature, bool coarse_first, Featu
   };
   if (coarse_first) {
     build(options_.coarse_sigma_px);
-    align(own_pull(), kCoarseIterations, false);
+    align(self_bias(), kCoarseIterations, false);
   }
   build(options_.fine_sigma_px);
-  alignment->own_pull = feature.own_pull ? *feature.own_pull : own_pull();
-  const AlignmentQuality quality = align(alignment->own_pull, options_.iterations, true);
-  alignment->stray_share = 1.0 - quality.inlier_share;
+  alignment->self_bias = feature.self_bias ? *feature.self_bias : self_bias();
+  const AlignmentQuality quality = align(alignment->self_bias, options_.iterations, true);
+  alignment->stray_share = 1.0 - quality.inlier_ratio;
   const double scale = feature.scale * std::sqrt(std::abs(motion.linear.determinant()));
-  return quality.inlier_share >= options_.min_inlier_ratio && quality.residual_px <= options_.max_residual_px &&
+  return quality.inlier_ratio >= options_.min_inlier_ratio && quality.residual_px <= options_.max_residual_px &&
          motion.offset.norm() <= options_.max_prediction_error_px && scale < options_.max_scale &&
          scale > 1.0 / options_.max_scale;
 }
@@ -318,7 +318,7 @@ void FeatureTracker::UpdateTemplate(const events::LocalEvents& events, const Pat
   feature->unlearnt_s = 0.0;
   ++feature->windows;
   const double gain = std::max(1.0 - std::pow(1.0 - options_.template_gain, news), 1.0 / feature->windows);
-  thread_local std::optional<DensityMap> window;
+  thread_local std::optional<EventHistogram> window;
   if (!window || window->side() != feature->events.side() || window->planes() != feature->events.planes()) {
     window.emplace(feature->events.radius(), feature->events.planes());
   }
@@ -335,7 +335,7 @@ void FeatureTracker::UpdateTemplate(const events::LocalEvents& events, const Pat
     feature->scale *= growth;
     feature->linear.setIdentity();
   }
-  feature->own_pull.reset();
+  feature->self_bias.reset();
 }
 
 }  // namespace evo::tracking

@@ -13,9 +13,9 @@
 #include "tracking/motion/depth_samples.hpp"
 #include "tracking/motion/ego_motion.hpp"
 #include "tracking/motion/epipolar_filter.hpp"
-#include "tracking/motion/jolt.hpp"
-#include "tracking/patch/density_map.hpp"
-#include "tracking/patch/em_affine.hpp"
+#include "tracking/motion/rotation_correction.hpp"
+#include "tracking/patch/event_histogram.hpp"
+#include "tracking/patch/em_alignment.hpp"
 #include "tracking/tracker.hpp"
 
 namespace evo::tracking {
@@ -31,11 +31,11 @@ struct TrackedFeature {
   double inverse_depth = 0.0;                             ///< mean over the last frames, see EgoMotion
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();        ///< of its plane, see EgoMotion::At
   double scale = 1.0;                                     ///< of the patch against its first window
-  DensityMap events;                                      ///< the template
-  std::optional<PullMoments> own_pull = {};               ///< of the template since it learnt, see AssociationField
+  EventHistogram events;                                      ///< the template
+  std::optional<SelfBias> self_bias = {};               ///< of the template since it learnt, see AssociationTable
   int windows = 1;                                        ///< that the template has learnt from
   double unlearnt_s = 0.0;                                ///< time since the last of them
-  double information = 0.0;                               ///< see AssociationField, in the worst direction, at birth
+  double information = 0.0;                               ///< see AssociationTable, in the worst direction, at birth
   int frames = 1;                                         ///< lifetime so far
   OddityMeans oddity = {};                                ///< over its life so far
   bool judged = false;                                    ///< whether it is odd
@@ -53,13 +53,13 @@ struct FeatureAlignment {
   };
   State state = State::kLost;
   Eigen::Vector2d position;                 ///< predicted, px: `start` and `motion` are relative to it
-  Eigen::Matrix<double, 2, 3> by_rotation;  ///< there, see PixelGeometry
+  Eigen::Matrix<double, 2, 3> J_pixel_rotation;  ///< there, see PixelJacobians
   PatchMotion start;                        ///< predicted
   PatchMotion motion;                       ///< aligned
   TimeNs half_window = 0;
   events::LocalEvents events;
   double stray_share = 0.0;  ///< of the events, see AlignmentQuality
-  PullMoments own_pull;      ///< of the template, see AssociationField
+  SelfBias self_bias;      ///< of the template, see AssociationTable
 
   /// Where the feature is now, px.
   Eigen::Vector2d Landed() const { return state == State::kFound ? position + motion.offset : position; }
@@ -86,14 +86,14 @@ class FeatureTracker : public Tracker {
   void Track(const events::EventHistory& history, TimeNs t);
   /// How a feature probably lies in the sensor `step_s` after the last frame, relative to the `position` returned.
   PatchMotion Predict(const TrackedFeature& feature, double step_s, Eigen::Vector2d* position) const;
-  void Align(const events::EventHistory& history, TimeNs t, const Jolt& jolt, const TrackedFeature& feature,
+  void Align(const events::EventHistory& history, TimeNs t, const RotationCorrection& jolt, const TrackedFeature& feature,
              FeatureAlignment* alignment) const;
-  void AlignAll(const events::EventHistory& history, TimeNs t, const Jolt& jolt);
+  void AlignAll(const events::EventHistory& history, TimeNs t, const RotationCorrection& jolt);
   /// Where all features turned unexpectedly, aligns them again, expecting that.
   void FollowJolt(const events::EventHistory& history, TimeNs t);
   /// Where all features are reported, after the alignment and before they advance.
   std::vector<Eigen::Vector2d> FilteredPositions(double step_s);
-  std::vector<UnexpectedMotion> UnexpectedMotions() const;
+  std::vector<PredictionResidual> PredictionResiduals() const;
   /// Aligns the events to the feature's template from `start`; false if they do not fit it.
   bool Fit(const TrackedFeature& feature, bool coarse_first, FeatureAlignment* alignment) const;
   bool MayRest(const FeatureAlignment& alignment, const TrackedFeature& feature) const;

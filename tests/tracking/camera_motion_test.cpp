@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kShortestAway = 0.2;  // px/s
+constexpr double kMinTranslationalFlow = 0.2;  // px/s
 const Vector2d kFlow(120.0, -70.0);
 
 /// Forwards, sideways and backwards.
@@ -23,72 +23,72 @@ std::vector<CameraMotion> Motions() {
           {Vector3d(0.1, -0.3, -0.8).normalized(), {0.2, 0.1, -0.1}}};
 }
 
-std::vector<PixelGeometry> Pixels() {
-  const LensGrid lens{geometry::Camera(geometry::MvsecDavis346())};
-  std::vector<PixelGeometry> pixels;
+std::vector<PixelJacobians> Pixels() {
+  const JacobianTable jacobians{geometry::Camera(geometry::MvsecDavis346())};
+  std::vector<PixelJacobians> pixels;
   for (const Vector2d& pixel : {Vector2d(30, 20), Vector2d(200, 90), Vector2d(150, 220), Vector2d(320, 250)}) {
-    pixels.push_back(lens.At(pixel));
+    pixels.push_back(jacobians.Lookup(pixel));
   }
   return pixels;
 }
 
-FlowResidual Residual(const PixelGeometry& pixel, const CameraMotion& motion, const Vector2d& flow = kFlow,
-                      double shortest_away = kShortestAway) {
-  return ResidualOf(flow, pixel, motion, motion.DirectionTangents(), shortest_away);
+EpipolarResidual Residual(const PixelJacobians& pixel, const CameraMotion& motion, const Vector2d& flow = kFlow,
+                          double min_translational_flow = kMinTranslationalFlow) {
+  return ComputeEpipolarResidual(flow, pixel, motion, motion.DirectionTangents(), min_translational_flow);
 }
 
-TEST(CameraMotion, StepsAlongTangentsOfItsDirection) {
+TEST(CameraMotion, RetractsAlongTheTangentsOfItsDirection) {
   for (const CameraMotion& motion : Motions()) {
     const CameraMotion::Tangents tangents = motion.DirectionTangents();
     EXPECT_TRUE((tangents.transpose() * tangents).isIdentity(1e-12));
     EXPECT_LT((tangents.transpose() * motion.direction).norm(), 1e-12);
     const CameraMotion::Step step(0.3, -0.4, 0.01, 0.02, 0.03);
-    const CameraMotion moved = motion.Moved(tangents, step);
-    EXPECT_NEAR(moved.direction.norm(), 1.0, 1e-12);
-    EXPECT_NEAR(moved.direction.dot(motion.direction), 1.0 / std::hypot(1.0, 0.5), 1e-12);
-    EXPECT_LT((moved.turn_rate - motion.turn_rate - Vector3d(0.01, 0.02, 0.03)).norm(), 1e-12);
+    const CameraMotion retracted = motion.Retract(tangents, step);
+    EXPECT_NEAR(retracted.direction.norm(), 1.0, 1e-12);
+    EXPECT_NEAR(retracted.direction.dot(motion.direction), 1.0 / std::hypot(1.0, 0.5), 1e-12);
+    EXPECT_LT((retracted.angular_velocity - motion.angular_velocity - Vector3d(0.01, 0.02, 0.03)).norm(), 1e-12);
   }
 }
 
-TEST(FlowResidual, IsWhatTheMotionDoesNotExplain) {
+TEST(EpipolarResidual, IsTheDistanceFromTheLine) {
   for (const CameraMotion& motion : Motions()) {
-    for (const PixelGeometry& pixel : Pixels()) {
-      const Vector2d away = motion.Away(pixel);
-      const Vector2d explained = pixel.by_rotation * motion.turn_rate + 0.7 * away;
-      const Vector2d across = Vector2d(-away.y(), away.x()).normalized();
+    for (const PixelJacobians& pixel : Pixels()) {
+      const Vector2d line = motion.TranslationalFlow(pixel);
+      const Vector2d explained = pixel.J_pixel_rotation * motion.angular_velocity + 0.7 * line;
+      const Vector2d across = Vector2d(-line.y(), line.x()).normalized();
       EXPECT_NEAR(Residual(pixel, motion, explained).value, 0.0, 1e-9);
       EXPECT_NEAR(Residual(pixel, motion, explained + 3.0 * across).value, 3.0, 1e-9);
     }
   }
 }
 
-TEST(FlowResidual, HasTheDerivativeThatSmallStepsShow) {
+TEST(EpipolarResidual, JacobianAgreesWithTheNumericOne) {
   constexpr double kStep = 1e-5;
   for (const CameraMotion& motion : Motions()) {
     const CameraMotion::Tangents tangents = motion.DirectionTangents();
-    for (const PixelGeometry& pixel : Pixels()) {
-      const CameraMotion::Step derivative = Residual(pixel, motion).derivative;
+    for (const PixelJacobians& pixel : Pixels()) {
+      const CameraMotion::Step jacobian = Residual(pixel, motion).jacobian;
       CameraMotion::Step numeric;
       for (int i = 0; i < numeric.size(); ++i) {
         const CameraMotion::Step step = kStep * CameraMotion::Step::Unit(i);
-        const double after = Residual(pixel, motion.Moved(tangents, step)).value;
-        const double before = Residual(pixel, motion.Moved(tangents, -step)).value;
+        const double after = Residual(pixel, motion.Retract(tangents, step)).value;
+        const double before = Residual(pixel, motion.Retract(tangents, -step)).value;
         numeric[i] = (after - before) / (2.0 * kStep);
       }
-      EXPECT_GT(derivative.head<2>().norm(), 0.1);
-      EXPECT_LT((derivative - numeric).norm(), 1e-6 * derivative.norm())
-          << derivative.transpose() << " is not " << numeric.transpose();
+      EXPECT_GT(jacobian.head<2>().norm(), 0.1);
+      EXPECT_LT((jacobian - numeric).norm(), 1e-6 * jacobian.norm())
+          << jacobian.transpose() << " is not " << numeric.transpose();
     }
   }
 }
 
-TEST(FlowResidual, FadesWhereTheLineMeansLittle) {
+TEST(EpipolarResidual, FadesWhereTheLineIsIllDefined) {
   const CameraMotion motion = Motions().front();
-  const PixelGeometry pixel = Pixels().front();
-  const FlowResidual sharp = Residual(pixel, motion);
-  const FlowResidual faded = Residual(pixel, motion, kFlow, 10.0 * motion.Away(pixel).norm());
+  const PixelJacobians pixel = Pixels().front();
+  const EpipolarResidual sharp = Residual(pixel, motion);
+  const EpipolarResidual faded = Residual(pixel, motion, kFlow, 10.0 * motion.TranslationalFlow(pixel).norm());
   EXPECT_NEAR(faded.value, 0.1 * sharp.value, 1e-9);
-  EXPECT_LT(faded.derivative.norm(), 0.11 * sharp.derivative.norm());
+  EXPECT_LT(faded.jacobian.norm(), 0.11 * sharp.jacobian.norm());
 }
 
 }  // namespace

@@ -81,7 +81,7 @@ struct ShakyTracks {
 /// All of them, taken for one stretch.
 events::Tracks Restored(const ShakyTracks& scene) {
   events::Tracks restored = scene.smoothed;
-  RestoreShake(scene.camera, LensGrid(scene.camera), scene.smoothed, scene.windows, 0, restored);
+  RestoreShake(scene.camera, JacobianTable(scene.camera), scene.smoothed, scene.windows, 0, restored);
   return restored;
 }
 
@@ -156,7 +156,7 @@ TEST(RestoreShake, LeavesInstantsAlone) {
   ShakyTracks scene(0.1);
   scene.windows.assign(scene.windows.size(), {});
   EXPECT_TRUE(Restored(scene) == scene.smoothed);
-  RestoreShake(scene.camera, LensGrid(scene.camera), {}, {}, 0, {});
+  RestoreShake(scene.camera, JacobianTable(scene.camera), {}, {}, 0, {});
 }
 
 }  // namespace

@@ -7,11 +7,11 @@ namespace {
 
 using Eigen::Vector2d;
 
-const DepthSample kCentre{{100.0, 200.0}, 2.0};
+const DepthSample kBiweight{{100.0, 200.0}, 2.0};
 const Vector2d kSlope(0.004, 0.03);
 
 double DepthOnPlane(const Vector2d& position) {
-  return kCentre.inverse_depth + kSlope.dot(position - kCentre.position);
+  return kBiweight.inverse_depth + kSlope.dot(position - kBiweight.position);
 }
 
 /// On a grid around the centre and with it.
@@ -19,42 +19,42 @@ std::vector<DepthSample> PlaneSamples() {
   std::vector<DepthSample> samples;
   for (int x = -2; x <= 2; ++x) {
     for (int y = -2; y <= 2; ++y) {
-      const Vector2d position = kCentre.position + 22.0 * Vector2d(x, y);
+      const Vector2d position = kBiweight.position + 22.0 * Vector2d(x, y);
       samples.push_back({position, DepthOnPlane(position)});
     }
   }
   return samples;
 }
 
-TEST(SurfaceSlope, IsThatOfThePlaneThroughTheSamples) {
-  const auto slope = SurfaceSlope(PlaneSamples(), kCentre);
+TEST(FitInverseDepthGradient, IsThatOfThePlaneThroughTheSamples) {
+  const auto slope = FitInverseDepthGradient(PlaneSamples(), kBiweight);
   ASSERT_TRUE(slope);
   EXPECT_LT((*slope - kSlope).norm(), 0.05 * kSlope.norm());
 }
 
-TEST(SurfaceSlope, IgnoresOtherSurfacesAndUnknownDepths) {
+TEST(FitInverseDepthGradient, IgnoresOtherSurfacesAndUnknownDepths) {
   auto samples = PlaneSamples();
   for (std::size_t i = 0; i < samples.size(); i += 4) samples[i].inverse_depth = i % 8 ? 0.0 : 7.0;
-  const auto slope = SurfaceSlope(samples, kCentre);
+  const auto slope = FitInverseDepthGradient(samples, kBiweight);
   ASSERT_TRUE(slope);
   EXPECT_LT((*slope - kSlope).norm(), 0.1 * kSlope.norm());
 }
 
-TEST(SurfaceSlope, IsUnknownWhereTooFewAgree) {
-  EXPECT_FALSE(SurfaceSlope({}, kCentre));
-  EXPECT_FALSE(SurfaceSlope({kCentre}, kCentre));
-  EXPECT_FALSE(SurfaceSlope(PlaneSamples(), {kCentre.position, 0.0}));
+TEST(FitInverseDepthGradient, IsUnknownWhereTooFewAgree) {
+  EXPECT_FALSE(FitInverseDepthGradient({}, kBiweight));
+  EXPECT_FALSE(FitInverseDepthGradient({kBiweight}, kBiweight));
+  EXPECT_FALSE(FitInverseDepthGradient(PlaneSamples(), {kBiweight.position, 0.0}));
   auto samples = PlaneSamples();
   for (auto& sample : samples) sample.position += Vector2d(300.0, 0.0);
-  EXPECT_FALSE(SurfaceSlope(samples, kCentre));
+  EXPECT_FALSE(FitInverseDepthGradient(samples, kBiweight));
 }
 
-TEST(UsualInverseDepth, IsTheMedianOfTheNearest) {
+TEST(MedianInverseDepth, IsTheMedianOfTheNearest) {
   std::vector<DepthSample> samples = {{{0, 0}, 9.0}, {{1, 0}, 1.0}, {{2, 0}, 2.0}, {{0, 3}, 3.0}, {{0, 1}, 0.0}};
-  EXPECT_FALSE(UsualInverseDepth(samples, {0, 0})) << "four depths are known";
+  EXPECT_FALSE(MedianInverseDepth(samples, {0, 0})) << "four depths are known";
   for (int x = 10; x < 20; ++x) samples.push_back({{x, 0}, 5.0});
-  EXPECT_EQ(UsualInverseDepth(samples, {0, 0}), 3.0) << "of 1, 2, 3, 5 and 9";
-  EXPECT_EQ(UsualInverseDepth(samples, {15, 0}), 5.0);
+  EXPECT_EQ(MedianInverseDepth(samples, {0, 0}), 3.0) << "of 1, 2, 3, 5 and 9";
+  EXPECT_EQ(MedianInverseDepth(samples, {15, 0}), 5.0);
 }
 
 }  // namespace

@@ -18,15 +18,15 @@ using Eigen::Vector3d;
 constexpr double kStep = 1e-4;   // s, of numeric derivatives
 constexpr double kFrame = 0.02;  // s
 
-/// A camera that moves with `velocity` (m/s) while the world turns about it with `turn_rate` (rad/s).
+/// A camera that moves with `velocity` (m/s) while the world turns about it with `angular_velocity` (rad/s).
 struct Mover {
   geometry::Camera camera{geometry::MvsecDavis346()};
   Vector3d velocity{0.4, -0.3, 8.0};
-  Vector3d turn_rate{0.05, -0.2, 0.1};
+  Vector3d angular_velocity{0.05, -0.2, 0.1};
 
   /// Where a point, given in camera coordinates at time 0, is seen at `t`.
   Vector2d Seen(const Vector3d& point, double t) const {
-    return camera.Project(geometry::so3::Exp(t * turn_rate) * Vector3d(point - t * velocity));
+    return camera.Project(geometry::so3::Exp(t * angular_velocity) * Vector3d(point - t * velocity));
   }
   FlowSample Sample(const Vector3d& point) const {
     return {Seen(point, 0.0), (Seen(point, kStep) - Seen(point, -kStep)) / (2.0 * kStep)};
@@ -57,7 +57,7 @@ TEST(EgoMotion, FindsForwardAndSidewaysMotion) {
     motion.Update(Flows(mover, 80, 0.0, 3), kFrame);
     ASSERT_TRUE(motion.known());
     EXPECT_LT(AngleDeg(motion.direction(), velocity), 0.5) << velocity.transpose();
-    EXPECT_LT((motion.turn_rate() - mover.turn_rate).norm(), 0.005) << velocity.transpose();
+    EXPECT_LT((motion.angular_velocity() - mover.angular_velocity).norm(), 0.005) << velocity.transpose();
   }
 }
 
@@ -70,7 +70,7 @@ TEST(EgoMotion, WithstandsNoiseAndMovingObjects) {
     motion.Update(samples, kFrame);
     ASSERT_TRUE(motion.known()) << seed;
     EXPECT_LT(AngleDeg(motion.direction(), mover.velocity), 3.0) << seed;
-    EXPECT_LT((motion.turn_rate() - mover.turn_rate).norm(), 0.03) << seed;
+    EXPECT_LT((motion.angular_velocity() - mover.angular_velocity).norm(), 0.03) << seed;
   }
 }
 
@@ -81,9 +81,9 @@ TEST(EgoMotion, IsUnknownWithoutEnoughFlowsOrWhereTheyContradict) {
   EXPECT_FALSE(motion.known());
   motion.Update(Flows(mover, 60, 400.0, 1), kFrame);
   EXPECT_FALSE(motion.known());
-  const PatchFlow patch = motion.At({{100, 100}, {10, 20}}, {0.01, 0.0});
-  EXPECT_TRUE(patch.rate.isZero() && patch.bend.isZero() && patch.acceleration.isZero());
-  EXPECT_TRUE(motion.SlopeOf({100, 100}, Matrix2d::Identity()).isZero());
+  const PatchFlow patch = motion.PredictPatchFlow({{100, 100}, {10, 20}}, {0.01, 0.0});
+  EXPECT_TRUE(patch.linear_rate.isZero() && patch.quadratic_rate.isZero() && patch.acceleration.isZero());
+  EXPECT_TRUE(motion.EstimateInverseDepthGradient({100, 100}, Matrix2d::Identity()).isZero());
 }
 
 TEST(EgoMotion, FollowsAChangeOfDirection) {
@@ -100,12 +100,12 @@ TEST(EgoMotion, KnowsHowMuchItsTurningUsuallyChanges) {
   const auto change_after = [](double swing) {
     Mover mover;
     EgoMotion motion(mover.camera);
-    const Vector3d mean = mover.turn_rate;
+    const Vector3d mean = mover.angular_velocity;
     for (int i = 0; i < 50; ++i) {
-      mover.turn_rate = mean + Vector3d(swing * std::sin(0.5 * i), 0.0, 0.0);
+      mover.angular_velocity = mean + Vector3d(swing * std::sin(0.5 * i), 0.0, 0.0);
       motion.Update(Flows(mover, 80, 0.0, 3), kFrame);
     }
-    return motion.turn_change();
+    return motion.typical_angular_acceleration();
   };
   EXPECT_LT(change_after(0.0), 0.01);
   const double mean_change = 0.2 * 0.5 * M_2_PI / kFrame;  // of a sine, from frame to frame
@@ -118,7 +118,7 @@ TEST(EgoMotion, HasNoDirectionWhereTheCameraStandsOrTurns) {
   EgoMotion motion(mover.camera);
   motion.Update(Flows(mover, 80, 0.5, 3), kFrame);
   EXPECT_FALSE(motion.known());
-  mover.turn_rate.setZero();
+  mover.angular_velocity.setZero();
   motion.Update(Flows(mover, 80, 0.5, 3), kFrame);
   EXPECT_FALSE(motion.known());
 }
@@ -137,26 +137,26 @@ TEST(EgoMotion, SaysNothingWhereTheLensHasNoInverse) {
   motion.Update(samples, kFrame);
   ASSERT_TRUE(motion.known());
   for (const Vector2d& pixel : {Vector2d(2, 2), Vector2d(-3, -3), Vector2d(360, 270), Vector2d(173, 130)}) {
-    const PatchFlow patch = motion.At({pixel, {100, 80}}, {0.01, 0.0});
-    EXPECT_TRUE(patch.rate.allFinite() && patch.bend.allFinite() && patch.acceleration.allFinite());
-    EXPECT_LT(patch.rate.norm(), 20.0) << pixel.transpose();
-    EXPECT_TRUE(motion.SlopeOf(pixel, Matrix2d::Identity()).allFinite());
-    motion.Allows({pixel, {100, 80}});
+    const PatchFlow patch = motion.PredictPatchFlow({pixel, {100, 80}}, {0.01, 0.0});
+    EXPECT_TRUE(patch.linear_rate.allFinite() && patch.quadratic_rate.allFinite() && patch.acceleration.allFinite());
+    EXPECT_LT(patch.linear_rate.norm(), 20.0) << pixel.transpose();
+    EXPECT_TRUE(motion.EstimateInverseDepthGradient(pixel, Matrix2d::Identity()).allFinite());
+    motion.MayBeStatic({pixel, {100, 80}});
   }
 }
 
 TEST(EgoMotion, AllowsOnlyWhatARestingPointMayDo) {
   Mover mover;
-  mover.turn_rate.setZero();
+  mover.angular_velocity.setZero();
   EgoMotion motion(mover.camera);
   const FlowSample resting = mover.Sample({1.0, 0.8, 6.0});
   const FlowSample backwards{resting.position, -resting.flow};
   const FlowSample across{resting.position, {-resting.flow.y(), resting.flow.x()}};
-  EXPECT_TRUE(motion.Allows(backwards));  // nothing is known yet
+  EXPECT_TRUE(motion.MayBeStatic(backwards));  // nothing is known yet
   motion.Update(Flows(mover, 80, 0.0, 3), kFrame);
-  EXPECT_TRUE(motion.Allows(resting));
-  EXPECT_FALSE(motion.Allows(backwards));
-  EXPECT_FALSE(motion.Allows(across));
+  EXPECT_TRUE(motion.MayBeStatic(resting));
+  EXPECT_FALSE(motion.MayBeStatic(backwards));
+  EXPECT_FALSE(motion.MayBeStatic(across));
 }
 
 TEST(EgoMotion, PredictsHowAPatchOfThePlaneOfTheRoadChanges) {
@@ -174,20 +174,20 @@ TEST(EgoMotion, PredictsHowAPatchOfThePlaneOfTheRoadChanges) {
   const FlowSample sample = mover.Sample(on_road(centre));
   const double speed = mover.velocity.norm();
   const Vector2d slope(0.0, speed / kHeight / mover.camera.calibration().fy);
-  const PatchFlow patch = motion.At(sample, slope);
+  const PatchFlow patch = motion.PredictPatchFlow(sample, slope);
   for (const Vector2d& y : {Vector2d(6, 0), Vector2d(0, 6), Vector2d(-5, -5), Vector2d(4, -6)}) {
     const Vector2d expected = mover.Sample(on_road(centre + y)).flow - sample.flow;
-    const Vector2d predicted = patch.rate * y + patch.bend.dot(y) * y;
+    const Vector2d predicted = patch.linear_rate * y + patch.quadratic_rate.dot(y) * y;
     EXPECT_LT((predicted - expected).norm(), 0.15 * expected.norm() + 0.3) << y.transpose();
   }
   // A patch thought to face the camera grows otherwise than predicted; that tells the slope.
-  const Matrix2d unexpected = patch.rate - motion.At(sample, Vector2d::Zero()).rate;
-  EXPECT_LT((motion.SlopeOf(sample.position, unexpected) - slope).norm(), 0.1 * slope.norm());
+  const Matrix2d unexpected = patch.linear_rate - motion.PredictPatchFlow(sample, Vector2d::Zero()).linear_rate;
+  EXPECT_LT((motion.EstimateInverseDepthGradient(sample.position, unexpected) - slope).norm(), 0.1 * slope.norm());
 }
 
 TEST(EgoMotion, PredictsHowTheFlowOfAPointChanges) {
   Mover mover;
-  mover.turn_rate.setZero();
+  mover.angular_velocity.setZero();
   EgoMotion motion(mover.camera);
   motion.Update(Flows(mover, 80, 0.0, 3), kFrame);
   ASSERT_TRUE(motion.known());
@@ -200,7 +200,7 @@ TEST(EgoMotion, PredictsHowTheFlowOfAPointChanges) {
         (mover.Seen(point, kLater) - 2.0 * mover.Seen(point, 0.0) + mover.Seen(point, -kLater)) / (kLater * kLater);
     // Whatever the slope of the plane, it is the centre that moves.
     for (const Vector2d& slope : {Vector2d(0.0, 0.0), Vector2d(0.01, 0.02)}) {
-      const Vector2d acceleration = motion.At(sample, slope).acceleration;
+      const Vector2d acceleration = motion.PredictPatchFlow(sample, slope).acceleration;
       EXPECT_LT((acceleration - expected).norm(), 0.08 * expected.norm()) << pixel.transpose();
     }
   }
@@ -225,34 +225,34 @@ TEST(EgoMotion, IsFilteredWhereItGoesOn) {
 
 TEST(EgoMotion, CorrectsTheFlowOfARestingPointAcrossItsLine) {
   Mover mover;
-  mover.turn_rate.setZero();
+  mover.angular_velocity.setZero();
   EgoMotion motion(mover.camera);
   const FlowSample truth = mover.Sample({2.5, 1.5, 6.0});
   const Vector2d along = truth.flow.normalized(), across(-along.y(), along.x());
   const FlowSample off{truth.position, truth.flow + 3.0 * across};
-  EXPECT_EQ(motion.AtRest(off), off.flow);  // nothing is known yet
+  EXPECT_EQ(motion.ProjectToEpipolarLine(off), off.flow);  // nothing is known yet
   motion.Update(Flows(mover, 80, 0.0, 3), kFrame);
   ASSERT_TRUE(motion.known());
-  EXPECT_LT((motion.AtRest(off) - truth.flow).norm(), 1.5);
+  EXPECT_LT((motion.ProjectToEpipolarLine(off) - truth.flow).norm(), 1.5);
   // How fast the point moves along its line, only its flow can tell; and one that moves by itself is left alone.
   const FlowSample faster{truth.position, truth.flow + 3.0 * along};
-  EXPECT_LT((motion.AtRest(faster) - faster.flow).norm(), 0.5);
+  EXPECT_LT((motion.ProjectToEpipolarLine(faster) - faster.flow).norm(), 0.5);
   const FlowSample moving{truth.position, truth.flow + 300.0 * across};
-  EXPECT_LT((motion.AtRest(moving) - moving.flow).norm(), 10.0);
+  EXPECT_LT((motion.ProjectToEpipolarLine(moving) - moving.flow).norm(), 10.0);
 }
 
 TEST(EgoMotion, TellsHowNearAPointIsAndWillBe) {
   const Mover mover;
   EgoMotion motion(mover.camera);
   const Vector3d point(2.5, 1.5, 6.0);
-  EXPECT_EQ(motion.InverseDepth(mover.Sample(point)), 0.0);  // nothing is known yet
+  EXPECT_EQ(motion.EstimateInverseDepth(mover.Sample(point)), 0.0);  // nothing is known yet
   motion.Update(Flows(mover, 80, 0.0, 3), kFrame);
   const double speed = mover.velocity.norm();
-  const double inverse_depth = motion.InverseDepth(mover.Sample(point));
+  const double inverse_depth = motion.EstimateInverseDepth(mover.Sample(point));
   EXPECT_NEAR(inverse_depth, speed / point.z(), 0.04 * speed / point.z());
   constexpr double kLater = 0.05;
   const double growth = point.z() / (point.z() - kLater * mover.velocity.z());
-  EXPECT_NEAR(motion.Advanced(inverse_depth, kLater), growth * inverse_depth, 0.01 * inverse_depth);
+  EXPECT_NEAR(motion.PropagateInverseDepth(inverse_depth, kLater), growth * inverse_depth, 0.01 * inverse_depth);
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ class Drive {
         filtered = truth;
         continue;
       }
-      filtered = filter.Filter({Vector3d::UnitZ(), Vector3d::Zero()}, lens_, kStepS, steps);
+      filtered = filter.Filter({Vector3d::UnitZ(), Vector3d::Zero()}, jacobians_, kStepS, steps);
       if (k < 30) continue;
       for (std::size_t i = 0; i < points_.size(); ++i) {
         const Vector2d line = (camera_.Project(points_[i] - 0.01 * heading(k)) - truth[i]).normalized();
@@ -74,7 +74,7 @@ class Drive {
 
  private:
   geometry::Camera camera_{geometry::MvsecDavis346()};
-  LensGrid lens_{camera_};
+  JacobianTable jacobians_{camera_};
   std::mt19937 random_;
   std::vector<Vector3d> points_;
 };
@@ -99,26 +99,26 @@ TEST(EpipolarFilter, KeepsItsHandsOffAHandHeldCamera) {
 
 TEST(EpipolarFilter, AThingThatMovesByItselfKeepsItsPosition) {
   const geometry::Camera camera(geometry::MvsecDavis346());
-  const LensGrid lens(camera);
+  const JacobianTable jacobians(camera);
   std::vector<FeatureStep> steps;
   for (int i = 0; i < 60; ++i) {
     const Vector3d point(std::sin(1.0 * i), 0.6 * std::cos(1.7 * i), 2.5);
     steps.push_back({camera.Project(point), camera.Project(point - Vector3d(0.0, 0.0, kStepS)), 1.0 / 2.5});
   }
-  steps[7].now += Vector2d(6.0, -5.0);
+  steps[7].measured += Vector2d(6.0, -5.0);
   EpipolarFilter filter;
-  const auto positions = filter.Filter({Vector3d::UnitZ(), Vector3d::Zero()}, lens, kStepS, steps);
-  EXPECT_LT((positions[7] - steps[7].now).norm(), 0.5);
-  EXPECT_LT((positions[8] - steps[8].now).norm(), 0.1);
+  const auto positions = filter.Filter({Vector3d::UnitZ(), Vector3d::Zero()}, jacobians, kStepS, steps);
+  EXPECT_LT((positions[7] - steps[7].measured).norm(), 0.5);
+  EXPECT_LT((positions[8] - steps[8].measured).norm(), 0.1);
 }
 
 TEST(EpipolarFilter, DoesNothingWithTooFewFeatures) {
   const geometry::Camera camera(geometry::MvsecDavis346());
-  const LensGrid lens(camera);
+  const JacobianTable jacobians(camera);
   std::vector<FeatureStep> steps;
   for (int i = 0; i < 15; ++i) steps.push_back({Vector2d(20.0 * i, 100.0), Vector2d(20.0 * i + 2.0, 101.0), 0.5});
-  const auto positions = EpipolarFilter().Filter({Vector3d::UnitZ(), Vector3d::Zero()}, lens, kStepS, steps);
-  for (std::size_t i = 0; i < steps.size(); ++i) EXPECT_EQ(positions[i], steps[i].now);
+  const auto positions = EpipolarFilter().Filter({Vector3d::UnitZ(), Vector3d::Zero()}, jacobians, kStepS, steps);
+  for (std::size_t i = 0; i < steps.size(); ++i) EXPECT_EQ(positions[i], steps[i].measured);
 }
 
 }  // namespace

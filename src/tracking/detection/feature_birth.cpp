@@ -20,13 +20,13 @@ constexpr std::size_t kRemembered = 200;  // features with which a new one is co
 
 /// Of an event, in the direction in which the events tell least of where they are, as far as both halves of the window
 /// say the same: neither noise nor a pattern that does not keep its shape tells anything.
-double SmallestInformation(const events::LocalEvents& events, const PatchMotion& motion, const DensityMap& all) {
+double SmallestInformation(const events::LocalEvents& events, const PatchMotion& motion, const EventHistogram& all) {
   thread_local TemplatePoints points;
-  thread_local std::array<AssociationField, 2> fields;
+  thread_local std::array<AssociationTable, 2> fields;
   points.Update(events, motion);
-  std::array<DensityMap, 2> halves{DensityMap(all.radius(), all.planes()), DensityMap(all.radius(), all.planes())};
+  std::array<EventHistogram, 2> halves{EventHistogram(all.radius(), all.planes()), EventHistogram(all.radius(), all.planes())};
   for (std::size_t i = 0; i < events.size(); ++i) {
-    DensityMap& half = halves[events.dt[i] > 0.0f ? 1 : 0];
+    EventHistogram& half = halves[events.dt[i] > 0.0f ? 1 : 0];
     half.Vote(points.u[i], points.v[i], half.PlaneOf(events.polarity[i]), 1.0f);
   }
   for (std::size_t i = 0; i < halves.size(); ++i) {
@@ -45,9 +45,9 @@ void FeatureTracker::Refill(const events::EventHistory& history, TimeNs t) {
   const std::vector<DepthSample> depths = Depths();
   const auto guess = [&](const Eigen::Vector2d& position) -> std::optional<Eigen::Vector2d> {
     if (!ego_motion_.known()) return std::nullopt;
-    const auto inverse_depth = UsualInverseDepth(depths, position);
+    const auto inverse_depth = MedianInverseDepth(depths, position);
     if (!inverse_depth) return std::nullopt;
-    return ego_motion_.Flow(position, *inverse_depth);
+    return ego_motion_.PredictFlow(position, *inverse_depth);
   };
   flow_field_.Update(history, t, Flows(), guess, pool_);
   const cv::Mat image = CorrectedEventImage(history, t, flow_field_, options_.corner_window_motion_px, options_, pool_);
@@ -89,27 +89,27 @@ std::optional<TrackedFeature> FeatureTracker::Birth(const events::EventHistory& 
                                                     const std::vector<DepthSample>& depths) const {
   Eigen::Vector2d flow = flow_field_.At(position.x(), position.y());
   if (!EstimateFlow(history, t, position.x(), position.y(), options_, &flow)) return std::nullopt;
-  if (!ego_motion_.Allows({position, flow})) return std::nullopt;
+  if (!ego_motion_.MayBeStatic({position, flow})) return std::nullopt;
   thread_local events::LocalEvents events;
   const TimeNs half_window = HalfWindowOf(flow);
   history.Gather(
       {t, position.x(), position.y(), flow.x(), flow.y(), static_cast<double>(options_.patch_radius_px), half_window},
       &events);
   if (events.size() < static_cast<std::size_t>(options_.min_events)) return std::nullopt;
-  const double inverse_depth = ego_motion_.InverseDepth({position, flow});
+  const double inverse_depth = ego_motion_.EstimateInverseDepth({position, flow});
   TrackedFeature feature{.position = position,
                          .filtered = position,
                          .flow = flow,
                          .inverse_depth = inverse_depth,
-                         .slope = SurfaceSlope(depths, {position, inverse_depth}).value_or(Eigen::Vector2d::Zero()),
-                         .events = DensityMap(options_.patch_radius_px + kTemplateMarginPx, planes()),
+                         .slope = FitInverseDepthGradient(depths, {position, inverse_depth}).value_or(Eigen::Vector2d::Zero()),
+                         .events = EventHistogram(options_.patch_radius_px + kTemplateMarginPx, planes()),
                          .half_window = half_window,
                          .told_flow = flow};
-  const PatchFlow patch = ego_motion_.At({position, flow}, feature.slope);
+  const PatchFlow patch = ego_motion_.PredictPatchFlow({position, flow}, feature.slope);
   PatchMotion motion;
   motion.flow = flow;
-  motion.rate = patch.rate;
-  motion.bend = patch.bend;
+  motion.linear_rate = patch.linear_rate;
+  motion.quadratic_rate = patch.quadratic_rate;
   Accumulate(events, motion, &feature.events);
   if (feature.events.EffectiveCells() < options_.min_template_area_px) return std::nullopt;
   feature.information = SmallestInformation(events, motion, feature.events);

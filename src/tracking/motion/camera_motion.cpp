@@ -12,24 +12,25 @@ CameraMotion::Tangents CameraMotion::DirectionTangents() const {
   return tangents;
 }
 
-CameraMotion CameraMotion::Moved(const Tangents& tangents, const Step& step) const {
-  return {(direction + tangents * step.head<2>()).normalized(), turn_rate + step.tail<3>()};
+CameraMotion CameraMotion::Retract(const Tangents& tangents, const Step& step) const {
+  return {(direction + tangents * step.head<2>()).normalized(), angular_velocity + step.tail<3>()};
 }
 
-FlowResidual ResidualOf(const Eigen::Vector2d& flow, const PixelGeometry& pixel, const CameraMotion& motion,
-                        const CameraMotion::Tangents& tangents, double shortest_away) {
-  const Eigen::Vector2d translational = motion.WithoutTurn(pixel, flow);
-  const Eigen::Vector2d away = motion.Away(pixel);
-  const double length = std::max(away.norm(), shortest_away);
-  const Eigen::Vector2d across(-away.y() / length, away.x() / length);
-  FlowResidual residual;
-  residual.value = across.dot(translational);
-  // Turning the line by an angle takes that angle times the flow along it off the residual.
-  const double along = away.dot(translational) / length;
-  const Eigen::RowVector2d line = across.transpose() * pixel.by_normalized;
-  const Eigen::RowVector3d by_direction = line * CameraMotion::AwayByDirection(pixel);
-  residual.derivative.head<2>() = (-along / length) * (by_direction * tangents).transpose();
-  residual.derivative.tail<3>() = -(across.transpose() * pixel.by_rotation).transpose();
+EpipolarResidual ComputeEpipolarResidual(const Eigen::Vector2d& flow, const PixelJacobians& pixel,
+                                         const CameraMotion& motion, const CameraMotion::Tangents& tangents,
+                                         double min_translational_flow) {
+  const Eigen::Vector2d derotated = motion.Derotate(pixel, flow);
+  const Eigen::Vector2d line = motion.TranslationalFlow(pixel);
+  const double length = std::max(line.norm(), min_translational_flow);
+  const Eigen::Vector2d normal(-line.y() / length, line.x() / length);
+  EpipolarResidual residual;
+  residual.value = normal.dot(derotated);
+  // Rotating the line by an angle changes the residual by minus that angle times the flow along the line.
+  const double along = line.dot(derotated) / length;
+  const Eigen::RowVector2d J_across_normalized = normal.transpose() * pixel.J_pixel_normalized;
+  const Eigen::RowVector3d J_across_direction = J_across_normalized * CameraMotion::DirectionJacobian(pixel);
+  residual.jacobian.head<2>() = (-along / length) * (J_across_direction * tangents).transpose();
+  residual.jacobian.tail<3>() = -(normal.transpose() * pixel.J_pixel_rotation).transpose();
   return residual;
 }
 

@@ -3,40 +3,40 @@
 #include <Eigen/LU>
 #include <algorithm>
 
-#include "tracking/patch/lanes.hpp"
+#include "tracking/patch/simd8.hpp"
 
 namespace evo::tracking {
 
 namespace {
 
-constexpr double kReachPx = 70.0;      // farther samples are rarely of the same surface
-constexpr double kUsualError = 0.06;   // of an inverse depth, as a share of it
-constexpr double kUsualSlope = 0.06;   // 1/px, as a share of the inverse depth
-constexpr double kLeastSupport = 2.0;  // samples that agree, weighted
-constexpr double kWidest = 8.0;        // the first loss over the last
+constexpr double kMaxDistancePx = 70.0;      // samples farther away rarely lie on the same surface
+constexpr double kInverseDepthError = 0.06;  // standard deviation, relative to the inverse depth
+constexpr double kTypicalGradient = 0.06;    // standard deviation, relative to the inverse depth, 1/px
+constexpr double kMinSupport = 2.0;          // sum of the weights of the samples that agree
+constexpr double kFirstWidth = 8.0;          // of the robust loss, over the last width
 constexpr int kIterations = 6;
-constexpr int kNearest = 5;  // samples asked for what is usual
+constexpr int kMedianSamples = 5;
 
-/// Of samples near a place.
+/// Samples near a place.
 struct Neighbours {
-  std::vector<float> x, y;    // px from it
-  std::vector<float> nearer;  // its inverse depth over that of the place, less 1
-  std::vector<float> weight;  // from 0 far away to 1
+  std::vector<float> x, y;       // relative to the place, px
+  std::vector<float> deviation;  // of the inverse depth, relative to that of the place
+  std::vector<float> weight;     // from 0 at the largest distance to 1
 
   void Resize(std::size_t count) {
-    for (auto* column : {&x, &y, &nearer, &weight}) column->resize(count);
+    for (auto* column : {&x, &y, &deviation, &weight}) column->resize(count);
   }
 
   void Find(const std::vector<DepthSample>& samples, const DepthSample& at) {
     Resize(samples.size() + 1);
     std::size_t count = 0;
-    // Every sample is written, but stays only if the next one does not overwrite it: no branch to mispredict.
+    // Every sample is written, and the next one overwrites it unless it is near: no branch to mispredict.
     for (const auto& sample : samples) {
-      const Eigen::Vector2d away = sample.position - at.position;
-      const double distance = away.squaredNorm() / (kReachPx * kReachPx);
-      x[count] = static_cast<float>(away.x());
-      y[count] = static_cast<float>(away.y());
-      nearer[count] = static_cast<float>(sample.inverse_depth / at.inverse_depth - 1.0);
+      const Eigen::Vector2d offset = sample.position - at.position;
+      const double distance = offset.squaredNorm() / (kMaxDistancePx * kMaxDistancePx);
+      x[count] = static_cast<float>(offset.x());
+      y[count] = static_cast<float>(offset.y());
+      deviation[count] = static_cast<float>(sample.inverse_depth / at.inverse_depth - 1.0);
       weight[count] = static_cast<float>(1.0 - distance);
       const bool is_near = (distance < 1.0) & (distance > 0.0) & (sample.inverse_depth > 0.0);
       count += is_near ? 1 : 0;
@@ -45,32 +45,34 @@ struct Neighbours {
   }
 };
 
-/// Of the weighted least squares of a slope.
-struct SlopeSums {
+/// Normal equations of a gradient.
+struct GradientSums {
   float xx, xy, yy, x, y, support;
 };
 
-EVO_HOT void SumSlopes(const Neighbours& neighbours, const Eigen::Vector2f& slope, float width, SlopeSums* sums) {
-  Lanes xx{}, xy{}, yy{}, sum_x{}, sum_y{}, support{};
-  const float slope_x = slope.x();
-  const float slope_y = slope.y();
-  const Lanes zero{};
+/// Sums with the Cauchy weights at `gradient`. Eight floats at a time, so neither SolveRobust nor CauchyWeight.
+EVO_HOT void SumWeighted(const Neighbours& neighbours, const Eigen::Vector2f& gradient, float width,
+                         GradientSums* sums) {
+  F32x8 xx{}, xy{}, yy{}, sum_x{}, sum_y{}, support{};
+  const float gradient_x = gradient.x();
+  const float gradient_y = gradient.y();
+  const F32x8 zero{};
   for (std::size_t i = 0; i < neighbours.x.size(); i += kLanes) {
-    Lanes x, y, nearer, weight;
+    F32x8 x, y, deviation, weight;
     Load(neighbours.x, i, 0.0f, &x);
     Load(neighbours.y, i, 0.0f, &y);
-    Load(neighbours.nearer, i, 0.0f, &nearer);
+    Load(neighbours.deviation, i, 0.0f, &deviation);
     Load(neighbours.weight, i, 0.0f, &weight);
-    const Lanes usual = width * (1.0f + (nearer > zero ? nearer : zero));
-    const Lanes residual = (nearer - slope_x * x - slope_y * y) / usual;
-    const Lanes w = weight / (1.0f + residual * residual);
-    const Lanes wx = w * x;
-    const Lanes wy = w * y;
+    const F32x8 sigma = width * (1.0f + (deviation > zero ? deviation : zero));
+    const F32x8 residual = (deviation - gradient_x * x - gradient_y * y) / sigma;
+    const F32x8 w = weight / (1.0f + residual * residual);
+    const F32x8 wx = w * x;
+    const F32x8 wy = w * y;
     xx += wx * x;
     xy += wx * y;
     yy += wy * y;
-    sum_x += wx * nearer;
-    sum_y += wy * nearer;
+    sum_x += wx * deviation;
+    sum_y += wy * deviation;
     support += w;
   }
   *sums = {Sum(xx), Sum(xy), Sum(yy), Sum(sum_x), Sum(sum_y), Sum(support)};
@@ -78,32 +80,32 @@ EVO_HOT void SumSlopes(const Neighbours& neighbours, const Eigen::Vector2f& slop
 
 }  // namespace
 
-std::optional<Eigen::Vector2d> SurfaceSlope(const std::vector<DepthSample>& samples, const DepthSample& at) {
+std::optional<Eigen::Vector2d> FitInverseDepthGradient(const std::vector<DepthSample>& samples, const DepthSample& at) {
   if (!(at.inverse_depth > 0.0)) return std::nullopt;
   thread_local Neighbours neighbours;
   neighbours.Find(samples, at);
-  constexpr double kPrior = kUsualError * kUsualError / (kUsualSlope * kUsualSlope);
-  Eigen::Vector2d slope = Eigen::Vector2d::Zero();
-  SlopeSums s{};
-  double width = kWidest * kUsualError;
+  constexpr double kPrior = kInverseDepthError * kInverseDepthError / (kTypicalGradient * kTypicalGradient);
+  Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
+  GradientSums s{};
+  double width = kFirstWidth * kInverseDepthError;
   for (int i = 0; i < kIterations; ++i) {
-    SumSlopes(neighbours, slope.cast<float>(), static_cast<float>(width), &s);
+    SumWeighted(neighbours, gradient.cast<float>(), static_cast<float>(width), &s);
     Eigen::Matrix2d normal;
     normal << s.xx + kPrior, s.xy, s.xy, s.yy + kPrior;
-    slope = normal.inverse() * Eigen::Vector2d(s.x, s.y);
-    width = std::max(0.5 * width, kUsualError);
+    gradient = normal.inverse() * Eigen::Vector2d(s.x, s.y);
+    width = std::max(0.5 * width, kInverseDepthError);
   }
-  if (s.support < kLeastSupport) return std::nullopt;
-  return at.inverse_depth * slope;
+  if (s.support < kMinSupport) return std::nullopt;
+  return at.inverse_depth * gradient;
 }
 
-std::optional<double> UsualInverseDepth(std::vector<DepthSample> samples, const Eigen::Vector2d& position) {
+std::optional<double> MedianInverseDepth(std::vector<DepthSample> samples, const Eigen::Vector2d& position) {
   std::erase_if(samples, [](const DepthSample& sample) { return !(sample.inverse_depth > 0.0); });
-  if (samples.size() < static_cast<std::size_t>(kNearest)) return std::nullopt;
+  if (samples.size() < static_cast<std::size_t>(kMedianSamples)) return std::nullopt;
   const auto distance = [&](const DepthSample& sample) { return (sample.position - position).squaredNorm(); };
-  const auto end = samples.begin() + kNearest;
+  const auto end = samples.begin() + kMedianSamples;
   std::ranges::nth_element(samples, end - 1, {}, distance);
-  const auto middle = samples.begin() + kNearest / 2;
+  const auto middle = samples.begin() + kMedianSamples / 2;
   std::nth_element(samples.begin(), middle, end,
                    [](const auto& a, const auto& b) { return a.inverse_depth < b.inverse_depth; });
   return middle->inverse_depth;

@@ -6,18 +6,18 @@
 
 namespace evo::tracking {
 
-/// How near a feature's point is.
+/// Inverse depth of a feature's point.
 struct DepthSample {
   Eigen::Vector2d position;    ///< px
-  double inverse_depth = 0.0;  ///< 1/s, see EgoMotion; 0: not known
+  double inverse_depth = 0.0;  ///< in units of the speed, 1/s, see EgoMotion; 0: unknown
 };
 
-/// Gradient of the inverse depth, 1/(px s), of the surface at `at`: the plane through it that most of the samples
-/// around it lie on, by least squares that begin with a wide and end with a narrow robust loss. Samples at the very
-/// position of `at` say nothing. Empty where too few agree.
-std::optional<Eigen::Vector2d> SurfaceSlope(const std::vector<DepthSample>& samples, const DepthSample& at);
+/// Gradient of the inverse depth, 1/(px s), of the surface at `at`: that of the plane through `at` on which most
+/// samples around it lie. Iteratively reweighted least squares, with a loss that narrows from one iteration to the
+/// next. Samples at the very position of `at` are ignored. Empty if too few samples agree.
+std::optional<Eigen::Vector2d> FitInverseDepthGradient(const std::vector<DepthSample>& samples, const DepthSample& at);
 
-/// Median inverse depth of the few samples nearest to a place, 1/s. Empty where there are not that many.
-std::optional<double> UsualInverseDepth(std::vector<DepthSample> samples, const Eigen::Vector2d& position);
+/// Median inverse depth of the few samples nearest to `position`, 1/s. Empty if there are too few.
+std::optional<double> MedianInverseDepth(std::vector<DepthSample> samples, const Eigen::Vector2d& position);
 
 }  // namespace evo::tracking

@@ -1,97 +1,83 @@
 #include "tracking/motion/epipolar_filter.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "evo/core/robust.hpp"
+#include "tracking/motion/robust_linear.hpp"
 
 namespace evo::tracking {
 
 namespace {
 
-constexpr std::size_t kFewestFeatures = 20;
+constexpr std::ptrdiff_t kMinFeatures = 20;  // for five unknowns and outliers
 constexpr int kIterations = 6;
-constexpr double kNearHeadingPx = 20.0;    // there the lines mean little
-constexpr double kUsualDeviationPx = 0.2;  // beyond this a feature says less about the camera
-constexpr double kErrorPx = 0.4;           // of positions across their lines
-constexpr double kOwnMotionPx = 1.0;       // beyond this a deviation is less and less taken for an error
-constexpr double kTurnPrior = 1.0;         // px^2
-constexpr double kHeadingPrior = 0.3;      // rad
-constexpr double kMemory = 0.05;           // of the usual change of the heading, share of one frame
-constexpr double kMostChange = 0.5;        // rad
+constexpr double kFocusOfExpansionPx = 20.0;   // within this radius the lines are ill defined
+constexpr double kDeviationWidthPx = 0.2;      // of the robust loss
+constexpr double kPositionErrorPx = 0.4;       // standard deviation across the line
+constexpr double kStaticWidthPx = 1.0;         // a larger deviation counts less and less as an error
+constexpr double kRotationPrior = 1.0;         // (px/rad)^2
+constexpr double kDirectionPriorRad = 0.3;     // standard deviation
+constexpr double kDirectionChangeGain = 0.05;  // of one frame in the typical change of direction
+constexpr double kMaxDirectionChange = 0.5;    // rad
 
-using Change = Eigen::Matrix<double, 5, 1>;  // turn (rad), heading along both tangents (rad)
+using Correction = EpipolarDeviation::Correction;
 
-struct Deviation {
-  Eigen::Vector2d normal = Eigen::Vector2d::Zero();  // of the line
-  double value = 0.0;                                // px along it
-  Change derivative = Change::Zero();
-  double way_px = 0.0;  // that the translation moves the feature in this step
-
-  bool counts() const { return way_px > 0.0; }
-};
-
-Deviation MakeDeviation(const CameraMotion& motion, const CameraMotion::Tangents& tangents, const LensGrid& lens,
-                        double step_s, const FeatureStep& step) {
-  const PixelGeometry pixel = lens.At(0.5 * (step.before + step.now));
-  const Eigen::Vector2d away = motion.Away(pixel);
-  if (!pixel.known() || away.norm() < kNearHeadingPx) return {};
-  Deviation deviation;
-  deviation.normal = Eigen::Vector2d(-away.y(), away.x()).normalized();
-  deviation.value = deviation.normal.dot(step.now - step.before);
-  deviation.way_px = step_s * step.inverse_depth * away.norm();
-  const Eigen::Matrix<double, 2, 3> by_direction = pixel.by_normalized * CameraMotion::AwayByDirection(pixel);
-  deviation.derivative << pixel.by_rotation.transpose() * deviation.normal,
-      step_s * step.inverse_depth * tangents.transpose() * by_direction.transpose() * deviation.normal;
-  return deviation;
-}
-
-/// The turn and the change of the heading that explain the deviations best.
-Change Explain(const std::vector<Deviation>& deviations) {
-  Change prior;
-  prior << Eigen::Vector3d::Constant(kTurnPrior),
-      Eigen::Vector2d::Constant(std::pow(kUsualDeviationPx / kHeadingPrior, 2));
-  Change change = Change::Zero();
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
-    Eigen::Matrix<double, 5, 5> normal = prior.asDiagonal();
-    Change right = Change::Zero();
-    for (const auto& deviation : deviations) {
-      if (!deviation.counts()) continue;
-      const double left = (deviation.value - deviation.derivative.dot(change)) / kUsualDeviationPx;
-      const double weight = 1.0 / (1.0 + left * left);
-      normal += weight * deviation.derivative * deviation.derivative.transpose();
-      right += weight * deviation.derivative * deviation.value;
-    }
-    change = normal.ldlt().solve(right);
+/// The correction of rotation and direction that explains the deviations best.
+Correction FitCorrection(const std::vector<EpipolarDeviation>& deviations) {
+  Correction prior;
+  prior << Eigen::Vector3d::Constant(kRotationPrior),
+      Eigen::Vector2d::Constant(std::pow(kDeviationWidthPx / kDirectionPriorRad, 2));
+  std::vector<LinearMeasurement<1, 5>> measurements;
+  for (const auto& deviation : deviations) {
+    if (!deviation.observable()) continue;
+    measurements.push_back({deviation.jacobian.transpose(), Eigen::Matrix<double, 1, 1>::Constant(deviation.value)});
   }
-  return change;
+  return SolveRobust<1, 5>(measurements, prior, kDeviationWidthPx, kIterations);
 }
 
-/// Of a Kalman filter in its steady state, for variances of what changes in a step over that of a position.
-double SteadyGain(double ratio) { return 0.5 * (std::sqrt(ratio * ratio + 4.0 * ratio) - ratio); }
+/// Gain of a Kalman filter in its steady state. `ratio`: the variance of a change in one step over that of a position.
+double SteadyStateGain(double ratio) { return 0.5 * (std::sqrt(ratio * ratio + 4.0 * ratio) - ratio); }
 
 }  // namespace
 
-std::vector<Eigen::Vector2d> EpipolarFilter::Filter(const CameraMotion& motion, const LensGrid& lens, double step_s,
-                                                    std::span<const FeatureStep> steps) {
+EpipolarDeviation ComputeEpipolarDeviation(const CameraMotion& motion, const CameraMotion::Tangents& tangents,
+                                           const JacobianTable& jacobians, double step_s, const FeatureStep& step) {
+  const PixelJacobians pixel = jacobians.Lookup(0.5 * (step.previous + step.measured));
+  const Eigen::Vector2d line = motion.TranslationalFlow(pixel);
+  if (!pixel.known() || line.norm() < kFocusOfExpansionPx) return {};
+  EpipolarDeviation deviation;
+  deviation.normal = Eigen::Vector2d(-line.y(), line.x()).normalized();
+  deviation.value = deviation.normal.dot(step.measured - step.previous);
+  deviation.baseline_px = step_s * step.inverse_depth * line.norm();
+  const Eigen::Matrix<double, 2, 3> J_flow_direction =
+      pixel.J_pixel_normalized * CameraMotion::DirectionJacobian(pixel);
+  deviation.jacobian << pixel.J_pixel_rotation.transpose() * deviation.normal,
+      step_s * step.inverse_depth * tangents.transpose() * J_flow_direction.transpose() * deviation.normal;
+  return deviation;
+}
+
+std::vector<Eigen::Vector2d> EpipolarFilter::Filter(const CameraMotion& motion, const JacobianTable& jacobians,
+                                                    double step_s, std::span<const FeatureStep> steps) {
   const CameraMotion::Tangents tangents = motion.DirectionTangents();
-  std::vector<Deviation> deviations;
+  std::vector<EpipolarDeviation> deviations;
   std::vector<Eigen::Vector2d> positions;
   for (const auto& step : steps) {
-    deviations.push_back(MakeDeviation(motion, tangents, lens, step_s, step));
-    positions.push_back(step.now);
+    deviations.push_back(ComputeEpipolarDeviation(motion, tangents, jacobians, step_s, step));
+    positions.push_back(step.measured);
   }
-  const auto count = std::ranges::count_if(deviations, &Deviation::counts);
-  if (count < static_cast<std::ptrdiff_t>(kFewestFeatures)) return positions;
-  const Change change = Explain(deviations);
-  if (!change.allFinite()) return positions;
-  heading_change_ += kMemory * (std::min(change.tail<2>().norm(), kMostChange) - heading_change_);
+  if (std::ranges::count_if(deviations, &EpipolarDeviation::observable) < kMinFeatures) return positions;
+  const Correction correction = FitCorrection(deviations);
+  if (!correction.allFinite()) return positions;
+  direction_change_ +=
+      kDirectionChangeGain * (std::min(correction.tail<2>().norm(), kMaxDirectionChange) - direction_change_);
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    const Deviation& deviation = deviations[i];
-    if (!deviation.counts()) continue;
-    const double left = deviation.value - deviation.derivative.dot(change);
-    const double gain = SteadyGain(std::pow(deviation.way_px * heading_change_ / kErrorPx, 2));
-    const double at_rest = 1.0 / (1.0 + std::pow(left / kOwnMotionPx, 2));
-    positions[i] -= (1.0 - gain) * at_rest * left * deviation.normal;
+    const EpipolarDeviation& deviation = deviations[i];
+    if (!deviation.observable()) continue;
+    const double error = deviation.value - deviation.jacobian.dot(correction);
+    const double gain = SteadyStateGain(std::pow(deviation.baseline_px * direction_change_ / kPositionErrorPx, 2));
+    const double static_weight = CauchyWeight(std::pow(error / kStaticWidthPx, 2));
+    positions[i] -= (1.0 - gain) * static_weight * error * deviation.normal;
   }
   return positions;
 }

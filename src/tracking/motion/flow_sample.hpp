@@ -4,7 +4,7 @@
 
 namespace evo::tracking {
 
-/// Position and optical flow of a tracked feature, from which a flow field starts.
+/// Position and optical flow of a feature.
 struct FlowSample {
   Eigen::Vector2d position;  ///< px
   Eigen::Vector2d flow;      ///< px/s

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "tracking/patch/lanes.hpp"
+#include "tracking/patch/simd8.hpp"
 
 namespace evo::tracking {
 
@@ -145,7 +145,7 @@ class ShakeEquations {
 class ShakeEstimator {
  public:
   /// `tracks`: the observations of the stretch, in order of time.
-  ShakeEstimator(const LensGrid& lens, std::span<const events::TrackObservation> tracks,
+  ShakeEstimator(const JacobianTable& lens, std::span<const events::TrackObservation> tracks,
                  std::span<const ObservedWindow> windows)
       : lens_(lens), tracks_(tracks), windows_(windows) {
     const auto second = std::ranges::upper_bound(tracks_, tracks_.front().t, {}, &events::TrackObservation::t);
@@ -174,7 +174,7 @@ class ShakeEstimator {
 
   /// Px for a rotation of one px at the image's centre.
   ImageJacobian JacobianAt(const events::TrackObservation& o) const {
-    return lens_.At({o.x, o.y}).by_rotation / lens_.focal_px();
+    return lens_.Lookup({o.x, o.y}).J_pixel_rotation / lens_.focal_px();
   }
 
   Sample MakeSample(std::size_t index) const {
@@ -257,7 +257,7 @@ class ShakeEstimator {
     coefficients_ = equations.Solve();
   }
 
-  const LensGrid& lens_;
+  const JacobianTable& lens_;
   std::span<const events::TrackObservation> tracks_;
   std::span<const ObservedWindow> windows_;
   std::size_t stride_ = 1;  // frames from one knot to the next
@@ -267,7 +267,7 @@ class ShakeEstimator {
 
 }  // namespace
 
-void RestoreShake(const geometry::Camera& camera, const LensGrid& lens, std::span<const events::TrackObservation> seen,
+void RestoreShake(const geometry::Camera& camera, const JacobianTable& lens, std::span<const events::TrackObservation> seen,
                   std::span<const ObservedWindow> windows, std::size_t first,
                   std::span<events::TrackObservation> restored) {
   if (restored.empty()) return;

@@ -6,7 +6,7 @@
 #include "evo/core/time.hpp"
 #include "evo/events/tracks.hpp"
 #include "evo/geometry/camera.hpp"
-#include "tracking/motion/lens_grid.hpp"
+#include "tracking/motion/jacobian_table.hpp"
 #include "tracking/smoothing/observed_window.hpp"
 
 namespace evo::tracking {
@@ -31,7 +31,7 @@ inline constexpr TimeNs kShakeMargin = kNsPerSecond / 2;
 /// Frames must be evenly spaced; where they are more than 25 ms apart they cannot show a shake and nothing changes.
 /// `seen`: all observations of the stretch and its margins, in order of time; `windows`: of each of them. `restored`:
 /// those of the stretch, a copy of `seen` from index `first` on.
-void RestoreShake(const geometry::Camera& camera, const LensGrid& lens, std::span<const events::TrackObservation> seen,
+void RestoreShake(const geometry::Camera& camera, const JacobianTable& lens, std::span<const events::TrackObservation> seen,
                   std::span<const ObservedWindow> windows, std::size_t first,
                   std::span<events::TrackObservation> restored);
 

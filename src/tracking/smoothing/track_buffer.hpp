@@ -13,7 +13,7 @@
 #include "evo/events/tracks.hpp"
 #include "evo/geometry/camera.hpp"
 #include "evo/tracking/tracker_options.hpp"
-#include "tracking/motion/lens_grid.hpp"
+#include "tracking/motion/jacobian_table.hpp"
 #include "tracking/smoothing/observed_window.hpp"
 
 namespace evo::tracking {
@@ -44,7 +44,7 @@ class TrackBuffer {
   std::size_t IndexOf(TimeNs t) const;
 
   geometry::Camera camera_;
-  LensGrid lens_;
+  JacobianTable lens_;
   bool restore_shake_;
   ThreadPool* pool_;
   events::TrackSink sink_;
