@@ -140,7 +140,7 @@ TEST(BundleAdjuster, ResultDoesNotDependOnThreads) {
 /// A pose seen by a few tracks, one of which has slipped.
 TEST(BundleAdjuster, MotionPriorHoldsAPoseWithFewTracks) {
   constexpr int kFrame = 6;
-  double with = 0.0, without = 0.0;  // largest errors
+  double with = 0.0, without = 0.0;  // maximum errors
   for (std::uint32_t seed = 1; seed <= 10; ++seed) {
     auto truth = DriveBundle(12, 120, 0.2, seed);
     truth.fixed_frames = 2;

@@ -22,7 +22,7 @@ constexpr double kScaleWeightPx = 1e3;  // any: it fixes what the observations l
 /// Observations with noise and some outliers by a camera that drives forward; poses and points are perturbed.
 BundleProblem PerturbedDrive(std::uint32_t seed) {
   std::mt19937 random(seed);
-  std::uniform_real_distribution<double> side(-0.6, 0.6), depth(4.0, 20.0), share(0.0, 1.0), far(-15.0, 15.0);
+  std::uniform_real_distribution<double> side(-0.6, 0.6), depth(4.0, 20.0), uniform(0.0, 1.0), far(-15.0, 15.0);
   std::normal_distribution<double> normal;
   BundleProblem problem;
   for (int i = 0; i < kFrames; ++i) {
@@ -34,7 +34,7 @@ BundleProblem PerturbedDrive(std::uint32_t seed) {
     for (int i = p % 3; i < kFrames; ++i) {
       const Eigen::Vector3d q = problem.T_cam_world[i] * WorldPosition(problem, problem.points.back());
       Eigen::Vector2d error_px(0.4 * normal(random), 0.4 * normal(random));
-      if (share(random) < 0.08) error_px += Eigen::Vector2d(far(random), far(random));
+      if (uniform(random) < 0.08) error_px += Eigen::Vector2d(far(random), far(random));
       Eigen::Matrix2d J_pixel_normalized;
       J_pixel_normalized << 230.0 + 10.0 * normal(random), 5.0 * normal(random), 5.0 * normal(random), 210.0;
       problem.observations.push_back(

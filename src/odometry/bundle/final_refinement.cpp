@@ -17,7 +17,7 @@ namespace evo::odometry {
 
 namespace {
 
-// Inlier ratio of a pose between two of the bundle: while the camera stands, most points may be on other cars.
+// Inlier ratio of a pose between two of the bundle: while the camera stands, the majority of points may be on other cars.
 constexpr double kMinInlierRatioBetween = 0.35;
 constexpr double kAdjustmentTime = 0.9;  // ratio of the whole refinement, for the progress
 
@@ -56,7 +56,7 @@ BundleOptions AdjustInRounds(const FinalRefinementOptions& options, const std::v
 }
 
 /// Times of the bundle's poses since the segment's first, s.
-std::vector<double> TimesOfPoses(const std::vector<Frame>& frames, const Segment& segment,
+std::vector<double> PoseTimes(const std::vector<Frame>& frames, const Segment& segment,
                                  const SegmentBundle& bundle) {
   std::vector<double> times_s;
   for (const std::size_t i : bundle.segment_poses) {
@@ -89,7 +89,7 @@ void RefineSegment(const FinalRefinementOptions& options, const std::vector<Fram
   SegmentBundle bundle = BuildSegmentBundle(options, frames, *segment);
   const auto& poses = bundle.problem.T_cam_world;
   const BundleOptions bundle_options =
-      AdjustInRounds(options, TimesOfPoses(frames, *segment, bundle), progress, pool, &bundle.problem);
+      AdjustInRounds(options, PoseTimes(frames, *segment, bundle), progress, pool, &bundle.problem);
   auto uncertainty = EstimatePoseUncertainty(options.covariance, bundle_options, bundle.problem, pool);
   const PoseRange range = uncertainty ? uncertainty->certain_range : PoseRange{0, poses.size()};
   const RefinedPoints points(bundle, options.drift_variance_ratio, *segment);

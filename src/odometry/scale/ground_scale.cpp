@@ -121,7 +121,7 @@ void MovePoints(const std::vector<Frame>& frames, const std::vector<geometry::SE
   }
 }
 
-std::vector<geometry::SE3> PosesOf(const Segment& segment) {
+std::vector<geometry::SE3> CollectPoses(const Segment& segment) {
   std::vector<geometry::SE3> T_cam_world;
   for (const SegmentPose& pose : segment.poses) T_cam_world.push_back(pose.T_cam_world);
   return T_cam_world;
@@ -135,7 +135,7 @@ void Rescale(const std::vector<double>& scales, const ScaleInformation& informat
   Eigen::Vector3d old_position = Eigen::Vector3d::Zero();
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   for (Segment& segment : *segments) {
-    const std::vector<geometry::SE3> old_poses = PosesOf(segment);
+    const std::vector<geometry::SE3> old_poses = CollectPoses(segment);
     std::vector<double> segment_scales;
     for (SegmentPose& segment_pose : segment.poses) {
       const geometry::SE3 T_world_cam = segment_pose.T_cam_world.Inverse();
@@ -146,7 +146,7 @@ void Rescale(const std::vector<double>& scales, const ScaleInformation& informat
       segment_scales.push_back(scales[pose]);
       ++pose;
     }
-    segment.uncertainty.ApplyScale(information, segment_scales, PosesOf(segment));
+    segment.uncertainty.ApplyScale(information, segment_scales, CollectPoses(segment));
     MovePoints(frames, old_poses, segment_scales, &segment);
   }
 }

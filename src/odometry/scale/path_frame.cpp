@@ -1,6 +1,7 @@
 #include "odometry/scale/path_frame.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 
 namespace evo::odometry {
 

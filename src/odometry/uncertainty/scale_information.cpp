@@ -41,7 +41,7 @@ std::vector<Eigen::Vector3d> StepErrors(const PoseErrorSamples& errors, Eigen::I
 std::vector<double> TrackScaleErrors(const std::vector<Eigen::Vector3d>& step_errors, const PathSteps& path,
                                      double window) {
   const std::size_t count = step_errors.size();
-  std::vector<double> excess_lengths(count);  // of the way to each pose
+  std::vector<double> excess_lengths(count);  // of the path up to each pose
   for (std::size_t i = 1; i < count; ++i) {
     const double excess = path.lengths[i] > 0.0 ? step_errors[i].dot(path.steps[i]) / path.lengths[i] : 0.0;
     excess_lengths[i] = excess_lengths[i - 1] + excess;
