@@ -65,7 +65,7 @@ std::optional<TriangulatedPoint> TriangulateViews(std::span<const View> views) {
   if (views.size() < 2) return std::nullopt;
   const auto start = NearestToRays(views);
   if (!start) return std::nullopt;
-  TriangulatedPoint result{*start, Eigen::Matrix3d::Zero(), 0.0};
+  TriangulatedPoint result{*start, Eigen::Matrix3d::Zero()};
   Eigen::Matrix3d normal;
   for (int i = 0; i < kIterations; ++i) {
     if (!StepGaussNewton(views, &result.position_world, &normal)) return std::nullopt;
@@ -73,11 +73,8 @@ std::optional<TriangulatedPoint> TriangulateViews(std::span<const View> views) {
   const Eigen::FullPivLU<Eigen::Matrix3d> inverter(normal);
   if (!inverter.isInvertible()) return std::nullopt;
   result.covariance = inverter.inverse();
-  const Eigen::Vector3d first = result.position_world - views.front().T_cam_world.Inverse().translation();
   for (const View& view : views) {
     if (!((view.T_cam_world * result.position_world).z() > 0.0)) return std::nullopt;
-    const Eigen::Vector3d ray = result.position_world - view.T_cam_world.Inverse().translation();
-    result.parallax = std::max(result.parallax, std::atan2(first.cross(ray).norm(), first.dot(ray)));
   }
   return result;
 }

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "odometry/drive_messages.hpp"
+
 namespace evo::odometry {
 namespace {
 
@@ -85,7 +87,7 @@ Scene RandomScene(Motion motion, std::uint32_t seed) {
   return scene;
 }
 
-TEST(BootstrapGeometry, EstimatesTheMotionAndRejectsOutliers) {
+TEST(Bootstrapper, EstimatesTheMotionAndRejectsOutliers) {
   for (const Motion motion : {Motion::kForward, Motion::kSideways, Motion::kOblique}) {
     double outliers = 0.0, kept_outliers = 0.0;
     for (std::uint32_t seed = 1; seed <= 8; ++seed) {
@@ -114,7 +116,7 @@ TEST(BootstrapGeometry, EstimatesTheMotionAndRejectsOutliers) {
   }
 }
 
-TEST(BootstrapGeometry, StartsWhereMostTracksAreObserved) {
+TEST(Bootstrapper, StartsWhereMostTracksAreObserved) {
   Recording recording = Record({.step = {0.05, 0.0, 0.0}}, 1);
   for (int i = 0; i < 5; ++i) {
     std::erase_if(recording.frames[i].features, [](const Feature& feature) { return feature.track >= 25; });
@@ -127,7 +129,7 @@ TEST(BootstrapGeometry, StartsWhereMostTracksAreObserved) {
   EXPECT_GE(begin(0.5), 5);
 }
 
-TEST(BootstrapGeometry, RejectsAStandingCamera) {
+TEST(Bootstrapper, RejectsAStandingCamera) {
   for (std::uint32_t seed = 1; seed <= 10; ++seed) {
     std::string failure_reason;
     EXPECT_FALSE(FirstMap(Record({.outlier_ratio = 0.3}, seed), &failure_reason)) << seed;
@@ -135,7 +137,7 @@ TEST(BootstrapGeometry, RejectsAStandingCamera) {
   }
 }
 
-TEST(BootstrapGeometry, RejectsAPureRotation) {
+TEST(Bootstrapper, RejectsAPureRotation) {
   for (std::uint32_t seed = 1; seed <= 15; ++seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> both(-0.01, 0.01);
@@ -144,12 +146,38 @@ TEST(BootstrapGeometry, RejectsAPureRotation) {
   }
 }
 
-TEST(BootstrapGeometry, RejectsTracksWithoutARigidMotion) {
+TEST(Bootstrapper, RejectsTracksWithoutARigidMotion) {
   for (std::uint32_t seed = 1; seed <= 3; ++seed) {
     std::string failure_reason;
     EXPECT_FALSE(FirstMap(Record({.points = 60, .outlier_ratio = 1.0}, seed), &failure_reason)) << seed;
     EXPECT_NE(failure_reason.find("no rigid motion"), std::string::npos) << failure_reason;
   }
+}
+
+TEST(Bootstrapper, FindsForwardMotion) {
+  for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+    const auto drive = testing::MakeDrive({.seconds = 2.0, .stop = false, .bumps = false, .seed = seed});
+    const auto frames = BuildFrames(drive.tracks, testing::DriveCamera());
+    const Bootstrap bootstrap = testing::FirstMapOfDrive(frames);
+    const geometry::SE3 truth =
+        drive.truth[bootstrap.last].T_world_cam.Inverse() * drive.truth[bootstrap.first].T_world_cam;
+    const geometry::SE3& found = bootstrap.T_cam_world.back();
+    EXPECT_LT(geometry::so3::Log(found.rotation() * truth.rotation().conjugate()).norm(), 0.01) << seed;
+    const double cosine = found.translation().normalized().dot(truth.translation().normalized());
+    EXPECT_GT(cosine, std::cos(0.1)) << seed;
+    EXPECT_GE(bootstrap.points.size(), 25u) << seed;
+  }
+}
+
+TEST(Bootstrapper, BuildsAMapWithoutRefinement) {
+  const auto drive = testing::MakeDrive({.seconds = 2.0, .stop = false, .bumps = false});
+  const auto frames = BuildFrames(drive.tracks, testing::DriveCamera());
+  const Bootstrap refined = testing::FirstMapOfDrive(frames);
+  const Bootstrap plain = testing::FirstMapOfDrive(frames, {.refine = false});
+  EXPECT_EQ(plain.T_cam_world.size(), static_cast<std::size_t>(plain.last - plain.first + 1));
+  EXPECT_GE(plain.points.size(), 25u);
+  EXPECT_GT(plain.T_cam_world.back().translation().norm(), 0.0);
+  EXPECT_NE(plain.T_cam_world.back().translation(), refined.T_cam_world.back().translation());
 }
 
 }  // namespace

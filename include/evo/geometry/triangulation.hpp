@@ -27,7 +27,6 @@ struct View {
 struct TriangulatedPoint {
   Eigen::Vector3d position_world;
   Eigen::Matrix3d covariance;  ///< per unit variance of the observations on the plane z = 1
-  double parallax = 0.0;       ///< rad, the maximum angle between the first ray and any other
 };
 
 /// Triangulates a point from two or more views: the point nearest to all rays, then Gauss-Newton on the reprojection
