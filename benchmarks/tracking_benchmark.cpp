@@ -4,7 +4,9 @@
 #include <algorithm>
 
 #include "tracking/detection/corner_detector.hpp"
+#include "tracking/detection/flow_estimation.hpp"
 #include "tracking/detection/flow_field.hpp"
+#include "tracking/detection/motion_compensated_image.hpp"
 #include "tracking/patch/em_alignment.hpp"
 #include "tracking/patch/em_flow.hpp"
 #include "tracking/synthetic_events.hpp"
@@ -44,7 +46,7 @@ const Eigen::Vector2d& Centre() {
 events::LocalEvents GatherPatch(double radius) {
   events::LocalEvents events;
   MakeHistory().Gather({kStamp, Centre().x(), Centre().y(), kFlow.x(), kFlow.y(), radius, kHalfWindow}, &events);
-  events.Thin(static_cast<std::size_t>(TrackerOptions().max_events));
+  events.Subsample(static_cast<std::size_t>(TrackerOptions().max_events));
   return events;
 }
 
@@ -140,7 +142,7 @@ void EstimateFlowFromNothing(benchmark::State& state) {
   const TrackerOptions options;
   for (auto _ : state) {
     Eigen::Vector2d flow = Eigen::Vector2d::Zero();
-    EstimateFlow(history, kStamp, Centre().x(), Centre().y(), options, &flow);
+    EstimateFlow(history, kStamp, Centre(), options, &flow);
     benchmark::DoNotOptimize(flow);
   }
 }
@@ -154,7 +156,8 @@ void EventImage(benchmark::State& state) {
   field.Update(
       history, kStamp, {}, [](const Eigen::Vector2d&) { return std::nullopt; }, &pool);
   for (auto _ : state) {
-    const cv::Mat image = CorrectedEventImage(history, kStamp, field, options.corner_window_motion_px, options, &pool);
+    const cv::Mat image =
+        MotionCompensatedImage(history, kStamp, field, options.corner_window_motion_px, options, &pool);
     benchmark::DoNotOptimize(image.data);
   }
   CountEvents(state, SceneEvents().size());
@@ -168,7 +171,7 @@ void DetectCornersInImage(benchmark::State& state) {
   ThreadPool pool(1);
   field.Update(
       history, kStamp, {}, [](const Eigen::Vector2d&) { return std::nullopt; }, &pool);
-  const cv::Mat image = CorrectedEventImage(history, kStamp, field, options.corner_window_motion_px, options, &pool);
+  const cv::Mat image = MotionCompensatedImage(history, kStamp, field, options.corner_window_motion_px, options, &pool);
   const auto wanted = [](const Eigen::Vector2d&) { return true; };
   for (auto _ : state) benchmark::DoNotOptimize(DetectCorners(image, {}, 50, 0.0, options, &pool, wanted));
 }

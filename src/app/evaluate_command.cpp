@@ -18,7 +18,7 @@
 #include "app/track_evaluation.hpp"
 #include "evo/core/error.hpp"
 #include "evo/io/file_kind.hpp"
-#include "evo/report/tables.hpp"
+#include "evo/report/terminal_summary.hpp"
 
 namespace evo::app {
 

@@ -6,11 +6,10 @@
 
 #include "app/output_folder.hpp"
 #include "evo/core/output_file.hpp"
+#include "evo/report/evaluation_tables.hpp"
 #include "evo/report/figures.hpp"
 #include "evo/report/gnuplot.hpp"
 #include "evo/report/latex_tables.hpp"
-#include "evo/report/metric_rows.hpp"
-#include "evo/report/tables.hpp"
 
 namespace evo::app {
 
@@ -24,14 +23,14 @@ std::string Suffix(std::size_t index, const evaluation::Alignment& alignment) {
   return suffix;
 }
 
-void SayWhatIsMissing(const evaluation::Evaluation& evaluation) {
-  for (const auto& reason : evaluation.left_out) spdlog::warn("left out of the report: {}", reason);
+void LogSkipped(const evaluation::Evaluation& evaluation) {
+  for (const auto& reason : evaluation.skipped) spdlog::warn("not evaluated: {}", reason);
   if (evaluation.alignments.empty()) return;
   for (const auto& rpe : evaluation.alignments.front().rpe) {
     if (rpe.relations.front().statistics.count > 0) continue;
     spdlog::debug("no relative errors over {} ({} pairs): {}", rpe.delta.name, rpe.pairs,
                   evaluation.has_stamps || rpe.delta.unit != evaluation::DeltaUnit::kSeconds
-                      ? "the way is too short, or the tolerance too small"
+                      ? "the path is too short, or the tolerance too small"
                       : "the files have no stamps");
   }
 }
@@ -73,7 +72,7 @@ void RemoveEvaluationResults(const std::filesystem::path& folder) {
 
 void WriteEvaluationResults(const std::filesystem::path& folder, const std::string& sequence,
                             const evaluation::Evaluation& evaluation, bool with_plots, const Restarts& restarts) {
-  SayWhatIsMissing(evaluation);
+  LogSkipped(evaluation);
   if (evaluation.alignments.empty()) return;
   const auto rebootstraps = restarts ? std::optional(static_cast<std::int64_t>(restarts->size())) : std::nullopt;
   const auto rows = report::SummaryRows(sequence, evaluation, rebootstraps);

@@ -25,11 +25,10 @@ report::Canvas DrawFrame(const tracking::TrackingView& view) {
       view.t - kDrawnEvents / 2, view.t + kDrawnEvents / 2, [&](int x, int y, TimeNs t, std::int8_t polarity) {
         events.push_back(t, static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y), polarity);
       });
-  report::Canvas canvas =
-      report::DrawEvents(events, view.history.width(), view.history.height(), report::PolarityColors::kRedBlue, kZoom);
+  report::Canvas canvas = report::DrawEvents(events, view.history.width(), view.history.height(), kZoom);
   report::TrackDrawing drawing;
   drawing.zoom = kZoom;
-  drawing.alive = 0;
+  drawing.max_age = 0;
   report::DrawTracks(&canvas, view.tracks, view.t, drawing);
   return canvas;
 }
@@ -52,7 +51,7 @@ void EventDrawing::WriteSheet() {
     report::DrawLabel(&frames_[i], 0, 0, Format("t = %.3f s", ToSeconds(stamps_[i] - start_)), kLabelHeight);
   }
   report::WritePng(folder_ / ("four_frames_" + Format("%08.3f", ToSeconds(stamps_.front() - start_)) + "s.png"),
-                   report::Sheet(frames_, kColumns, kGap));
+                   report::ComposeGrid(frames_, kColumns, kGap));
   frames_.clear();
   stamps_.clear();
 }

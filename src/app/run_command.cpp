@@ -6,7 +6,7 @@
 #include "app/evaluation_results.hpp"
 #include "app/stages.hpp"
 #include "evo/core/error.hpp"
-#include "evo/report/tables.hpp"
+#include "evo/report/terminal_summary.hpp"
 
 namespace evo::app {
 
@@ -63,7 +63,7 @@ void RunEvaluationStage(StageContext* context, const GroundTruth& truth, const g
                         const std::vector<geometry::StampedCovariance>& covariances, const std::vector<TimeNs>& frames,
                         const std::vector<evaluation::Alignment>& alignments, bool only_determined) {
   evaluation::EvaluationOptions options = context->config.evaluation;
-  options.leave_out_undetermined = only_determined;
+  options.skip_degenerate_alignments = only_determined;
   const TimeNs offset = FromSeconds(options.association.estimate_clock_offset_s);
   // The truth of the whole interval counts: an estimate that covers a part of it must not look complete.
   const evaluation::EvaluationInterval interval{frames.front() + offset, frames.back() + offset};

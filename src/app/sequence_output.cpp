@@ -133,7 +133,7 @@ report::Canvas DrawImage(const events::GreyImage& image) {
   for (int y = 0; y < canvas.height; ++y) {
     for (int x = 0; x < canvas.width; ++x) {
       const std::uint8_t grey = image.grey[static_cast<std::size_t>(y / kZoom * image.width + x / kZoom)];
-      canvas.Blend(x, y, {grey, grey, grey});
+      canvas.Set(x, y, {grey, grey, grey});
     }
   }
   return canvas;
@@ -197,9 +197,9 @@ void PreviewOutput::OnImage(TimeNs t, const events::GreyImage& image, std::size_
   if (t < next_) return;
   next_ += every_;
   const events::EventColumns drawn = Cut(recent_, t - kDrawnEvents, t);
-  const std::vector<report::Canvas> panels{
-      DrawImage(image), report::DrawEvents(drawn, image.width, image.height, report::PolarityColors::kRedBlue, kZoom)};
-  report::WritePng(folder_ / Format("frame_%08.3fs.png", ToSeconds(t)), report::Sheet(panels, 2, 2 * kZoom));
+  const std::vector<report::Canvas> panels{DrawImage(image),
+                                           report::DrawEvents(drawn, image.width, image.height, kZoom)};
+  report::WritePng(folder_ / Format("frame_%08.3fs.png", ToSeconds(t)), report::ComposeGrid(panels, 2, 2 * kZoom));
 }
 
 }  // namespace evo::app

@@ -16,9 +16,10 @@
 #include "evo/core/progress.hpp"
 #include "evo/io/trajectory_io.hpp"
 #include "evo/odometry/map_writer.hpp"
+#include "evo/report/evaluation_tables.hpp"
 #include "evo/report/figures.hpp"
 #include "evo/report/latex_tables.hpp"
-#include "evo/report/tables.hpp"
+#include "evo/report/terminal_summary.hpp"
 #include "evo/tracking/track_events.hpp"
 
 namespace evo::app {

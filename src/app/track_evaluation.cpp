@@ -10,10 +10,11 @@
 #include "evo/core/output_file.hpp"
 #include "evo/io/track_io.hpp"
 #include "evo/odometry/resampling.hpp"
+#include "evo/report/evaluation_tables.hpp"
 #include "evo/report/figures.hpp"
 #include "evo/report/latex_tables.hpp"
-#include "evo/report/tables.hpp"
-#include "evo/report/track_report.hpp"
+#include "evo/report/terminal_summary.hpp"
+#include "evo/report/track_tables.hpp"
 
 namespace evo::app {
 
@@ -46,7 +47,7 @@ events::Tracks ReadInterval(const std::filesystem::path& path, const evaluation:
   std::erase_if(tracks, [&](const events::TrackObservation& observation) {
     return (interval.from && observation.t < *interval.from) || (interval.to && observation.t > *interval.to);
   });
-  if (tracks.empty()) throw Error(ErrorKind::kNothingToDo, path.string() + ": no tracks in the interval to be judged");
+  if (tracks.empty()) throw Error(ErrorKind::kNothingToDo, path.string() + ": no tracks in the evaluated interval");
   return tracks;
 }
 
@@ -132,8 +133,8 @@ TrackEvaluation EvaluateTracks(const TrackEvaluationArguments& arguments, const 
   evaluation.lifetimes = FindLifetimes(evaluation.made_frames_s ? odometry::Resample(tracks, resampling) : tracks);
   record->AddCount("tracks", evaluation.accuracy.tracks.size());
   record->AddCount("track_observations", tracks.size());
-  record->AddCount("judged_tracks",
-                   static_cast<std::size_t>(evaluation::Count(evaluation.accuracy, evaluation::TrackVerdict::kJudged)));
+  record->AddCount("judged_tracks", static_cast<std::size_t>(
+                                        evaluation::Count(evaluation.accuracy, evaluation::TrackStatus::kEvaluated)));
   return evaluation;
 }
 

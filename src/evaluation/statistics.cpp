@@ -9,8 +9,8 @@ namespace evo::evaluation {
 
 Statistics ComputeStatistics(std::span<const double> errors) {
   if (errors.empty()) {
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-    return {0, kNone, kNone, kNone, kNone, kNone, kNone, kNone};
+    constexpr double kUndetermined = std::numeric_limits<double>::quiet_NaN();
+    return {0, kUndetermined, kUndetermined, kUndetermined, kUndetermined, kUndetermined, kUndetermined, kUndetermined};
   }
   const auto n = static_cast<double>(errors.size());
   Statistics statistics;
@@ -28,7 +28,7 @@ Statistics ComputeStatistics(std::span<const double> errors) {
   std::vector<double> values(errors.begin(), errors.end());
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
-  // Of an even number the two in the middle count; the lower of them is the largest below.
+  // An even number has two middle values; the lower one is the largest before `middle`.
   statistics.median = values.size() % 2 ? *middle : 0.5 * (*std::max_element(values.begin(), middle) + *middle);
   const auto [min, max] = std::ranges::minmax(errors);
   statistics.min = min;

@@ -4,12 +4,13 @@
 #include <cmath>
 #include <functional>
 #include <stdexcept>
+#include <utility>
 
 namespace evo::events {
 
 namespace {
 
-// By which the ends of a moving patch are widened, so that rounding loses none of its events.
+// A moving patch is widened by this, so that rounding loses none of its events.
 constexpr double kRoundingPx = 1e-3;
 
 std::size_t ClampTile(double px, std::size_t tiles) {
@@ -26,17 +27,17 @@ void LocalEvents::resize(std::size_t count) {
   polarity.resize(count);
 }
 
-void LocalEvents::Thin(std::size_t count) {
+void LocalEvents::Subsample(std::size_t max_count) {
   const std::size_t total = size();
-  if (total <= count) return;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t from = i * total / count;
+  if (total <= max_count) return;
+  for (std::size_t i = 0; i < max_count; ++i) {
+    const std::size_t from = i * total / max_count;
     x[i] = x[from];
     y[i] = y[from];
     dt[i] = dt[from];
     polarity[i] = polarity[from];
   }
-  resize(count);
+  resize(max_count);
 }
 
 EventHistory::EventHistory(int width, int height)
@@ -60,43 +61,50 @@ void EventHistory::Append(const EventColumns& events, std::size_t begin, std::si
 }
 
 void EventHistory::AddToSlice(TimeNs t, const EventColumns& events, std::size_t begin, std::size_t end) {
-  const std::size_t tiles = columns_ * rows_;
-  if (slices_.empty() || slices_.back().begin != t) {
-    if (spare_.empty()) {
-      slices_.emplace_back();
-    } else {
-      slices_.push_back(std::move(spare_.back()));
-      spare_.pop_back();
-    }
-    slices_.back().begin = t;
-    slices_.back().entries.clear();
-    slices_.back().starts.assign(tiles + 1, 0);
+  if (slices_.empty() || slices_.back().begin != t) StartSlice(t);
+  MakeRoom(events, begin, end);
+  for (std::size_t i = begin; i < end; ++i) {
+    const auto since_begin = static_cast<std::uint32_t>(events.t[i] - t);
+    merged_[next_[TileIndex(events.x[i], events.y[i])]++] = {2 * since_begin + (events.polarity[i] > 0 ? 1 : 0),
+                                                             events.x[i], events.y[i]};
   }
+  std::swap(slices_.back().entries, merged_);
+}
+
+void EventHistory::StartSlice(TimeNs t) {
+  if (spare_.empty()) {
+    slices_.emplace_back();
+  } else {
+    slices_.push_back(std::move(spare_.back()));
+    spare_.pop_back();
+  }
+  slices_.back().begin = t;
+  slices_.back().entries.clear();
+  slices_.back().starts.assign(columns_ * rows_ + 1, 0);
+}
+
+void EventHistory::MakeRoom(const EventColumns& events, std::size_t begin, std::size_t end) {
+  // A counting sort by tile: first the number of new events in each tile, then the old entries with gaps after them.
   Slice& slice = slices_.back();
+  const std::size_t tiles = columns_ * rows_;
   next_.assign(tiles, 0);
-  for (std::size_t i = begin; i < end; ++i) ++next_[TileOf(events.x[i], events.y[i])];
+  for (std::size_t i = begin; i < end; ++i) ++next_[TileIndex(events.x[i], events.y[i])];
   merged_.resize(slice.entries.size() + end - begin);
-  std::uint32_t at = 0;
-  std::uint32_t before = 0;  // where the tile began
+  std::uint32_t place = 0;
+  std::uint32_t old_start = 0;
   for (std::size_t tile = 0; tile < tiles; ++tile) {
-    const std::uint32_t before_end = slice.starts[tile + 1];
-    slice.starts[tile] = at;
-    if (before != before_end) {
-      std::copy(slice.entries.begin() + before, slice.entries.begin() + before_end, merged_.begin() + at);
-      at += before_end - before;
+    const std::uint32_t old_end = slice.starts[tile + 1];
+    slice.starts[tile] = place;
+    if (old_start != old_end) {
+      std::copy(slice.entries.begin() + old_start, slice.entries.begin() + old_end, merged_.begin() + place);
+      place += old_end - old_start;
     }
     const std::uint32_t added = next_[tile];
-    next_[tile] = at;
-    at += added;
-    before = before_end;
+    next_[tile] = place;
+    place += added;
+    old_start = old_end;
   }
-  slice.starts[tiles] = at;
-  for (std::size_t i = begin; i < end; ++i) {
-    const auto after = static_cast<std::uint32_t>(events.t[i] - t);
-    merged_[next_[TileOf(events.x[i], events.y[i])]++] = {2 * after + (events.polarity[i] > 0 ? 1 : 0), events.x[i],
-                                                          events.y[i]};
-  }
-  std::swap(slice.entries, merged_);
+  slice.starts[tiles] = place;
 }
 
 void EventHistory::DropBefore(TimeNs t) {
@@ -107,12 +115,12 @@ void EventHistory::DropBefore(TimeNs t) {
   }
 }
 
-std::size_t EventHistory::SliceAfter(TimeNs t) const {
+std::size_t EventHistory::FirstSliceEndingAfter(TimeNs t) const {
   const auto slice = std::ranges::upper_bound(slices_, t, {}, [](const Slice& s) { return s.begin + kSlice; });
   return static_cast<std::size_t>(slice - slices_.begin());
 }
 
-TimeNs EventHistory::BeginOfNewest(TimeNs begin, TimeNs end, std::size_t count) const {
+TimeNs EventHistory::NewestWindowBegin(TimeNs begin, TimeNs end, std::size_t count) const {
   std::vector<TimeNs> stamps;
   ForEachBetween(begin, end, [&](int, int, TimeNs t, std::int8_t) { stamps.push_back(t); });
   if (stamps.empty() || count == 0) return end;
@@ -121,73 +129,70 @@ TimeNs EventHistory::BeginOfNewest(TimeNs begin, TimeNs end, std::size_t count) 
   return *first;
 }
 
+void EventHistory::FindRuns(const MovingPatch& patch, const Slice& slice, TimeNs begin, TimeNs last,
+                            std::vector<Run>* runs) const {
+  const TimeNs slice_begin = std::max(slice.begin, begin);
+  const TimeNs slice_last = std::min(slice.begin + kSlice - 1, last);
+  // Bounds of the patch during the slice.
+  const double middle_s = ToSeconds((slice_begin - patch.t + slice_last - patch.t) / 2);
+  const double half_s = 0.5 * ToSeconds(slice_last - slice_begin);
+  const double centre_x = patch.x + middle_s * patch.vx;
+  const double centre_y = patch.y + middle_s * patch.vy;
+  const double reach_x = patch.radius + half_s * std::abs(patch.vx) + kRoundingPx;
+  const double reach_y = patch.radius + half_s * std::abs(patch.vy) + kRoundingPx;
+  const std::size_t column_begin = ClampTile(centre_x - reach_x, columns_);
+  const std::size_t column_end = ClampTile(centre_x + reach_x, columns_) + 1;
+  const std::size_t row_begin = ClampTile(centre_y - reach_y, rows_);
+  const std::size_t row_end = ClampTile(centre_y + reach_y, rows_) + 1;
+  for (std::size_t row = row_begin; row < row_end; ++row) {
+    const auto entries = slice.TileEntries(row * columns_ + column_begin, row * columns_ + column_end);
+    if (entries.empty()) continue;
+    __builtin_prefetch(entries.data());
+    runs->push_back({entries, static_cast<std::int32_t>(slice.begin - patch.t),
+                     static_cast<std::int32_t>(slice_begin - slice.begin),
+                     static_cast<std::int32_t>(slice_last - slice.begin)});
+  }
+}
+
 void EventHistory::Gather(const MovingPatch& patch, LocalEvents* local) const {
-  if (patch.half_window > kLongestHalfWindow) throw std::length_error("too long a window of events");
+  if (patch.half_window > kMaxHalfWindow) throw std::length_error("a window of events is too long");
+  const TimeNs begin = std::max(patch.t - patch.half_window, oldest_);
+  const TimeNs last = patch.t + patch.half_window;
+  // All runs are found before the first is read, so that they are on their way into the cache.
+  thread_local std::vector<Run> runs;
+  runs.clear();
+  for (std::size_t i = FirstSliceEndingAfter(begin); i < slices_.size() && slices_[i].begin <= last; ++i) {
+    FindRuns(patch, slices_[i], begin, last, &runs);
+  }
+  std::size_t candidates = 0;
+  for (const Run& run : runs) candidates += run.entries.size();
+  // The buffer never shrinks, since growth fills the new part with zeros.
+  thread_local LocalEvents buffer;
+  if (buffer.size() < candidates + 1) buffer.resize(candidates + 1);
+  // Plain pointers: the compiler knows that a write of a polarity does not change them.
+  float* const xs = buffer.x.data();
+  float* const ys = buffer.y.data();
+  float* const dts = buffer.dt.data();
+  std::int8_t* const polarities = buffer.polarity.data();
   const auto cx = static_cast<float>(patch.x);
   const auto cy = static_cast<float>(patch.y);
   const auto vx = static_cast<float>(patch.vx);
   const auto vy = static_cast<float>(patch.vy);
   const auto radius = static_cast<float>(patch.radius);
-  const TimeNs begin = std::max(patch.t - patch.half_window, oldest_);
-  const TimeNs last = patch.t + patch.half_window;
-
-  /// Entries of a slice that lie side by side.
-  struct Run {
-    std::span<const Entry> entries;
-    std::int32_t since;        // ns from the instant asked for to the slice's begin
-    std::int32_t first, last;  // of the stamps in the window
-  };
-  // All runs first, so that they are on their way into the cache.
-  thread_local std::vector<Run> runs;
-  runs.clear();
-  std::size_t visited = 0;
-  for (std::size_t i = SliceAfter(begin); i < slices_.size() && slices_[i].begin <= last; ++i) {
-    const Slice& slice = slices_[i];
-    const TimeNs slice_begin = std::max(slice.begin, begin);
-    const TimeNs slice_last = std::min(slice.begin + kSlice - 1, last);
-    // The patch while the slice lasts.
-    const double middle_s = ToSeconds((slice_begin - patch.t + slice_last - patch.t) / 2);
-    const double reach_s = 0.5 * ToSeconds(slice_last - slice_begin);
-    const double centre_x = patch.x + middle_s * patch.vx;
-    const double centre_y = patch.y + middle_s * patch.vy;
-    const double reach_x = patch.radius + reach_s * std::abs(patch.vx) + kRoundingPx;
-    const double reach_y = patch.radius + reach_s * std::abs(patch.vy) + kRoundingPx;
-    const std::size_t column_begin = ClampTile(centre_x - reach_x, columns_);
-    const std::size_t column_end = ClampTile(centre_x + reach_x, columns_) + 1;
-    const std::size_t row_begin = ClampTile(centre_y - reach_y, rows_);
-    const std::size_t row_end = ClampTile(centre_y + reach_y, rows_) + 1;
-    for (std::size_t row = row_begin; row < row_end; ++row) {
-      const auto entries = slice.Of(row * columns_ + column_begin, row * columns_ + column_end);
-      if (entries.empty()) continue;
-      __builtin_prefetch(entries.data());
-      runs.push_back({entries, static_cast<std::int32_t>(slice.begin - patch.t),
-                      static_cast<std::int32_t>(slice_begin - slice.begin),
-                      static_cast<std::int32_t>(slice_last - slice.begin)});
-      visited += entries.size();
-    }
-  }
-  // Of a size that never shrinks, as growing sets what it adds to zero.
-  thread_local LocalEvents all;
-  if (all.size() < visited + 1) all.resize(visited + 1);
   std::size_t count = 0;
-  // Plain pointers, which a write of a polarity cannot change.
-  float* const xs = all.x.data();
-  float* const ys = all.y.data();
-  float* const dts = all.dt.data();
-  std::int8_t* const polarities = all.polarity.data();
   for (const Run& run : runs) {
-    // Every event is written, but stays only if the next one does not overwrite it: no branch to mispredict.
+    // Without a branch to mispredict: every candidate is written, and the next one overwrites it if it is outside.
     for (const Entry& entry : run.entries) {
-      const std::int32_t after = entry.t();
-      const float dt = 1e-9f * static_cast<float>(run.since + after);
+      const std::int32_t since_begin = entry.t();
+      const float dt = 1e-9f * static_cast<float>(run.offset + since_begin);
       const float x = static_cast<float>(entry.x) - cx;
       const float y = static_cast<float>(entry.y) - cy;
       xs[count] = x;
       ys[count] = y;
       dts[count] = dt;
       polarities[count] = entry.polarity();
-      const bool is_inside = (after >= run.first) & (after <= run.last) & (std::abs(x - vx * dt) <= radius) &
-                             (std::abs(y - vy * dt) <= radius);
+      const bool is_inside = (since_begin >= run.first) & (since_begin <= run.last) &
+                             (std::abs(x - vx * dt) <= radius) & (std::abs(y - vy * dt) <= radius);
       count += is_inside ? 1 : 0;
     }
   }

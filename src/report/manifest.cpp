@@ -2,6 +2,8 @@
 
 #include <sys/resource.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -15,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Numbers and booleans as such, everything else as text.
+/// Numbers and booleans as such, other values as text.
 Json ParameterValue(const std::string& text) {
   Json value = Json::parse(text, nullptr, false);
   return value.is_number() || value.is_boolean() ? value : Json(text);
@@ -85,8 +87,8 @@ Manifest ReadManifest(const std::filesystem::path& path) {
     return FromJson(Json::parse(text));
   } catch (const Json::parse_error& error) {
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
-    throw Error(ErrorKind::kInput, path.string() + ":" + std::to_string(1 + std::count(text.begin(), end, '\n')) +
-                                       ": is not JSON; is the file cut short?");
+    throw Error(ErrorKind::kInput, fmt::format("{}:{}: is not JSON; is the file cut short?", path.string(),
+                                               1 + std::count(text.begin(), end, '\n')));
   } catch (const std::exception& error) {
     throw Error(ErrorKind::kInput, path.string() + ": is not a manifest of evo-run: " + error.what());
   }
@@ -104,7 +106,7 @@ std::optional<double> RealTimeFactor(const Manifest& manifest) {
 double PeakMemoryMb() {
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) * 1024.0 * 1e-6;  // Linux counts in KiB
+  return static_cast<double>(usage.ru_maxrss) * 1024.0 * 1e-6;  // Linux reports KiB
 }
 
 double CpuTimeS() {

@@ -1,5 +1,7 @@
 #include "evo/report/run_folder.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <sstream>
@@ -15,10 +17,10 @@ namespace fs = std::filesystem;
 namespace {
 
 Error Failure(const fs::path& path, std::size_t line, const std::string& what) {
-  return Error(ErrorKind::kInput, path.string() + ":" + std::to_string(line) + ": " + what);
+  return Error(ErrorKind::kInput, fmt::format("{}:{}: {}", path.string(), line, what));
 }
 
-/// summary.csv, whose numbers can be relied on to be numbers.
+/// Reads summary.csv and checks that its measures are numbers.
 CsvTable ReadSummary(const fs::path& path) {
   CsvTable table = ReadCsv(path);
   const auto alignment = table.Find("alignment");
@@ -38,7 +40,7 @@ CsvTable ReadSummary(const fs::path& path) {
   return table;
 }
 
-/// The few figures of lifetime.csv that a comparison shows.
+/// Reads the numbers of lifetime.csv that a comparison shows.
 std::vector<std::pair<std::string, std::string>> ReadLifetimes(const fs::path& path) {
   const CsvTable table = ReadCsv(path);
   const auto quantity = table.Find("quantity");
@@ -64,14 +66,14 @@ std::vector<std::pair<std::string, std::string>> ReadLifetimes(const fs::path& p
   return found;
 }
 
-/// In one line, whatever the file holds.
+/// Reads failure.txt as one line.
 std::string ReadFailure(const fs::path& path) {
   std::istringstream lines(ReadTextFile(path));
   std::string text;
   for (std::string line; std::getline(lines, line);) {
     if (!line.empty()) text += (text.empty() ? "" : "; ") + line;
   }
-  return text.empty() ? "failure.txt does not say why" : text;
+  return text.empty() ? "failure.txt gives no reason" : text;
 }
 
 std::vector<std::string> ReadWarnings(const fs::path& path) {
@@ -85,7 +87,7 @@ std::vector<std::string> ReadWarnings(const fs::path& path) {
 
 std::vector<fs::path> FilesNamed(const fs::path& folder, const std::string& prefix, const std::string& suffix) {
   std::vector<fs::path> files;
-  std::error_code none;  // most folders have no such subfolder
+  std::error_code none;  // the folder may be missing
   for (const auto& entry : fs::directory_iterator(folder, none)) {
     const std::string name = entry.path().filename().string();
     if (name.starts_with(prefix) && name.ends_with(suffix) && entry.is_regular_file(none))
@@ -107,10 +109,10 @@ RunFolder ReadRunFolder(const fs::path& path) {
   } else if (!has("manifest.json")) {
     if (!has("summary.csv") && !has("lifetime.csv")) {
       throw Error(ErrorKind::kInput, path.string() +
-                                         ": no manifest.json, summary.csv, lifetime.csv or failure.txt in it; give the "
+                                         ": holds no manifest.json, summary.csv, lifetime.csv or failure.txt; give the "
                                          "--out folder of a run");
     }
-    run.failure = "no manifest.json: the run was not completed";
+    run.failure = "no manifest.json: the run did not complete";
   }
   if (has("manifest.json")) run.manifest = ReadManifest(path / "manifest.json");
   if (has("summary.csv") && run.failure.empty()) run.summary = ReadSummary(path / "summary.csv");
@@ -131,7 +133,7 @@ std::string Tail(const fs::path& path, int parts) {
   return tail.string();
 }
 
-/// Names of different folders that differ, each as short as possible.
+/// Unique names of different folders, each as short as possible.
 std::vector<std::string> UniqueNames(const std::vector<fs::path>& paths) {
   std::vector<std::string> names;
   for (const auto& path : paths) {

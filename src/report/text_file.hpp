@@ -5,7 +5,7 @@
 
 namespace evo::report {
 
-/// The bytes of a file. Throws Error (kInput).
+/// Reads a whole file. Throws Error (kInput).
 std::string ReadTextFile(const std::filesystem::path& path);
 
 }  // namespace evo::report

@@ -1,82 +1,142 @@
 #include "evo/tracking/track_events.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <future>
+#include <memory>
 #include <opencv2/core/utility.hpp>
+#include <optional>
+#include <utility>
 
 #include "evo/core/error.hpp"
-#include "evo/core/format.hpp"
 #include "tracking/smoothing/track_buffer.hpp"
 #include "tracking/tracker.hpp"
 
 namespace evo::tracking {
 
+namespace {
+
+/// Decodes a block of events while the caller processes the one before it.
+class BlockReader {
+ public:
+  explicit BlockReader(events::EventReader* reader) : reader_(reader) { ReadAhead(); }
+
+  /// Replaces `block` by the next one. False at the end of the stream.
+  bool Next(events::EventColumns* block) {
+    if (!has_next_.get()) return false;
+    std::swap(*block, next_);
+    ReadAhead();
+    return true;
+  }
+
+ private:
+  void ReadAhead() {
+    has_next_ = std::async(std::launch::async, [this] { return reader_->Next(&next_); });
+  }
+
+  events::EventReader* reader_;
+  events::EventColumns next_;
+  std::future<bool> has_next_;  // declared last: its destructor waits for the thread that writes the block
+};
+
+/// Runs a tracker over the event frames of a stream that arrives in blocks.
+class FrameSequence {
+ public:
+  FrameSequence(const geometry::Camera& camera, const TrackerOptions& options, ThreadPool* pool,
+                const events::TrackSink& sink, const std::function<void(const TrackingView&)>& observe)
+      : interval_(FromSeconds(options.frame_interval_s)),
+        half_window_(FromSeconds(0.5 * options.max_window_s)),
+        pool_(pool),
+        observe_(observe),
+        history_(camera.width(), camera.height()),
+        tracker_(MakeTracker(camera, options, pool)),
+        buffer_(camera, options, pool, sink) {}
+
+  /// Processes all frames whose events have arrived with this block.
+  void Add(const events::EventColumns& block) {
+    if (block.empty()) return;
+    // The first frame has half a window of events on either side.
+    if (!frame_) frame_ = block.t.front() + std::min(half_window_, interval_);
+    last_event_ = block.t.back();
+    result_.events += block.size();
+    std::size_t appended = 0;
+    // The history holds no more than a frame needs: the fewer its events, the faster a patch finds its own.
+    const auto append_for = [&](TimeNs frame) {
+      const auto end = std::ranges::upper_bound(block.t, frame + tracker_->after());
+      const auto count = static_cast<std::size_t>(end - block.t.begin());
+      history_.Append(block, appended, count);
+      appended = count;
+    };
+    append_for(*frame_);
+    while (appended < block.size()) {
+      ProcessFrame([&] { append_for(*frame_ + interval_); });
+      *frame_ += interval_;
+    }
+  }
+
+  /// Processes the last frames, whose windows the stream's end cuts.
+  TrackingResult Finish() {
+    for (; frame_ && *frame_ <= last_event_; *frame_ += interval_) ProcessFrame([] {});
+    if (result_.frames.size() < 2) {
+      throw Error(ErrorKind::kNothingToDo,
+                  "the events span less than two event frames; choose a longer interval or a smaller "
+                  "tracker.frame_interval_s");
+    }
+    buffer_.Finish();
+    return std::move(result_);
+  }
+
+ private:
+  /// `append_next` appends the events of the next frame to the history.
+  void ProcessFrame(const std::function<void()>& append_next) {
+    const TimeNs t = *frame_;
+    history_.DropBefore(t - tracker_->before());
+    tracker_->Track(history_, t);
+    // The estimate of the camera's motion reads no events, and neither of the two can be divided among threads.
+    pool_->ForEach(2, [&](std::size_t i) { i == 0 ? tracker_->EstimateMotion() : append_next(); });
+    tracker_->UpdateFeatures(history_);
+
+    result_.frames.push_back(t);
+    if (tracker_->is_key_frame()) ++result_.key_frames;
+    buffer_.Add(t, tracker_->Observations(), tracker_->Windows(), tracker_->Rejected());
+    if (observe_) observe_({history_, buffer_.held(), t});
+  }
+
+  TimeNs interval_;
+  TimeNs half_window_;
+  ThreadPool* pool_;
+  const std::function<void(const TrackingView&)>& observe_;
+  events::EventHistory history_;
+  std::unique_ptr<Tracker> tracker_;
+  TrackBuffer buffer_;
+  std::optional<TimeNs> frame_;  // stamp of the next frame; empty before the first event
+  TimeNs last_event_ = 0;
+  TrackingResult result_;
+};
+
+}  // namespace
+
 TrackingResult TrackEvents(events::EventReader* reader, const geometry::Camera& camera, const TrackerOptions& options,
                            ThreadPool* pool, const events::TrackSink& sink, const std::function<void(double)>& progress,
                            const std::function<void(const TrackingView&)>& observe) {
-  // Its variants for newer processors round differently: the tracks would depend on the machine.
+  // OpenCV's code for newer processors rounds differently: the tracks would depend on the machine.
   cv::setUseOptimized(false);
-  cv::setNumThreads(1);  // the pool's threads are all that were asked for
-  events::EventHistory history(camera.width(), camera.height());
-  const std::unique_ptr<Tracker> tracker = MakeTracker(camera, options, pool);
-  TrackBuffer buffer(camera, options, pool, sink);
-  TrackingResult result;
-  const TimeNs interval = FromSeconds(options.frame_interval_s);
-  const TimeNs half_window = FromSeconds(0.5 * options.max_window_s);
-
-  const auto process = [&](TimeNs t, const std::function<void()>& read_ahead) {
-    history.DropBefore(t - tracker->before());
-    tracker->Process(history, t, read_ahead);
-    result.frames.push_back(t);
-    if (tracker->detected()) ++result.key_frames;
-    buffer.Add(t, tracker->Observations(), tracker->Windows(), tracker->Withdrawn());
-    if (observe) observe({history, buffer.held(), t});
-  };
-
-  // One block is decoded while the one before it is tracked.
-  events::EventColumns block, next;
-  const auto read = [&] { return reader->Next(&next); };
-  std::future<bool> pending = std::async(std::launch::async, read);
-  std::optional<TimeNs> frame;
-  TimeNs last = 0;
-  while (pending.get()) {
-    std::swap(block, next);
-    pending = std::async(std::launch::async, read);
-    if (block.empty()) continue;
-    // The first frame has half a window of events on either side.
-    if (!frame) frame = block.t.front() + std::min(half_window, interval);
-    last = block.t.back();
-    result.events += block.size();
-    std::size_t appended = 0;
-    // No further than a frame sees: the fewer events there are, the faster those of a patch are found.
-    const auto append_for = [&](TimeNs t) {
-      const auto visible = std::ranges::upper_bound(block.t, t + tracker->after());
-      const auto end = static_cast<std::size_t>(visible - block.t.begin());
-      history.Append(block, appended, end);
-      appended = end;
-    };
-    append_for(*frame);
-    for (; appended < block.size(); *frame += interval, append_for(*frame)) {
-      process(*frame, [&] { append_for(*frame + interval); });
-    }
-    if (progress) progress(reader->progress());
+  cv::setNumThreads(1);  // the pool has all the threads that were asked for
+  FrameSequence sequence(camera, options, pool, sink, observe);
+  BlockReader blocks(reader);
+  events::EventColumns block;
+  while (blocks.Next(&block)) {
+    sequence.Add(block);
+    if (progress && !block.empty()) progress(reader->progress());
   }
-  if (frame) {
-    for (; *frame <= last; *frame += interval) process(*frame, [] {});
-  }
-  if (result.frames.size() < 2) {
-    throw Error(
-        ErrorKind::kNothingToDo,
-        "the events span less than two event frames; choose a longer interval or a smaller tracker.frame_interval_s");
-  }
-  buffer.Finish();
-  return result;
+  return sequence.Finish();
 }
 
 std::string DescribePositions(const TrackerOptions& options) {
   if (options.method != "klt") return "pixels of the raw sensor, each at the very instant of its stamp";
-  return Format(
-      "pixels of the raw sensor, in the image of the newest %d events, so late by half the time that these take",
+  return fmt::format(
+      "pixels of the raw sensor, in the image of the newest {} events, so late by half the time that these take",
       options.klt.events);
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/evo_run.hpp"
+#include "evo/core/parameters.hpp"
 #include "evo/events/depth_map.hpp"
 #include "evo/io/calibration_io.hpp"
 #include "evo/io/checksum.hpp"

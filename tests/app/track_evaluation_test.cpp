@@ -120,7 +120,7 @@ TEST_F(TrackEvaluationTest, DepthMapsGiveTheErrorAndTheTrueAge) {
   EXPECT_NEAR(std::stod(quality["expected_feature_age_normalized 3"]), 0.5, 0.04);  // lives 1 s of 2 s
   // Asynchronous tracks live as many frames as the odometry makes of them, 25 ms apart.
   EXPECT_NE(ReadFile(folder / "result" / "lifetime.csv").find("\nmean,frames,,,36.750000000\n"), std::string::npos);
-  EXPECT_NE(out.find("12 of 12 judged, truth: depth\n"), std::string::npos) << out;
+  EXPECT_NE(out.find("12 of 12 evaluated, truth: depth\n"), std::string::npos) << out;
   EXPECT_NE(ReadFile(folder / "result" / "track_errors.csv").find("\n11,1500000000.143000000,judged,"),
             std::string::npos);
 }
@@ -179,7 +179,7 @@ TEST_F(TrackEvaluationTest, TrajectoryAndTracksTogetherLeaveOneManifest) {
     EXPECT_NE(manifest.find(key), std::string::npos) << key;
   }
   EXPECT_NE(out.find("coverage"), std::string::npos);
-  EXPECT_NE(out.find("judged"), std::string::npos);
+  EXPECT_NE(out.find("evaluated"), std::string::npos);
   EXPECT_EQ(Refusal(arguments + To("both")), 8);  // results are not overwritten
 }
 

@@ -1,4 +1,4 @@
-#include "evo/evaluation/alignment.hpp"
+#include "evaluation/trajectory/alignment_fit.hpp"
 
 #include <gtest/gtest.h>
 
@@ -47,12 +47,12 @@ double Rmse(const geometry::Trajectory& truth, const geometry::Trajectory& estim
 const Similarity kRigid{1.0, geometry::SE3(geometry::so3::Exp({0.4, -1.2, 2.0}), {100.0, -20.0, 3.0})};
 const Similarity kSimilar{0.3, geometry::SE3(geometry::so3::Exp({0.4, -1.2, 2.0}), {100.0, -20.0, 3.0})};
 
-TEST(Alignment, FindsTheMotionThatWasApplied) {
+TEST(Alignment, RecoversTheAppliedSimilarity) {
   const auto truth = Curve(80);
   for (const char* name : {"sim3", "origin-scale", "first:2.5"}) {
     EXPECT_LT(Rmse(truth, Moved(truth, kSimilar), name), 1e-9) << name;
     const auto pairs = Associate(truth, Moved(truth, kSimilar), {});
-    EXPECT_NEAR(Align(pairs, ParseAlignment(name), Eigen::Vector3d::UnitZ()).scale, 1.0 / 0.3, 1e-9) << name;
+    EXPECT_NEAR(FitAlignment(pairs, ParseAlignment(name), Eigen::Vector3d::UnitZ()).scale, 1.0 / 0.3, 1e-9) << name;
   }
   for (const char* name : {"se3", "origin"}) EXPECT_LT(Rmse(truth, Moved(truth, kRigid), name), 1e-9) << name;
   EXPECT_GT(Rmse(truth, Moved(truth, kRigid), "none"), 1.0);
@@ -69,7 +69,7 @@ TEST(Alignment, ErrorsDoNotDependOnTheEstimatesWorldFrame) {
   }
 }
 
-TEST(Alignment, MoreFreedomNeverFitsWorse) {
+TEST(Alignment, MoreDegreesOfFreedomNeverFitWorse) {
   const auto truth = Curve(80);
   const auto estimate = Moved(Noisy(truth, 2), {0.95, geometry::SE3(geometry::so3::Exp({0, 0.02, 0}), {0.5, 0, 0})});
   const double sim3 = Rmse(truth, estimate, "sim3");
@@ -97,9 +97,10 @@ TEST(Alignment, ReflectionIsNeverUsed) {
     pose.T_world_cam = geometry::SE3(pose.T_world_cam.rotation(), {p.x(), -p.y(), p.z()});
   }
   const auto pairs = Associate(truth, mirrored, {});
-  EXPECT_NEAR(
-      Align(pairs, ParseAlignment("se3"), Eigen::Vector3d::UnitZ()).T_truth_estimate.RotationMatrix().determinant(),
-      1.0, 1e-12);
+  EXPECT_NEAR(FitAlignment(pairs, ParseAlignment("se3"), Eigen::Vector3d::UnitZ())
+                  .T_truth_estimate.RotationMatrix()
+                  .determinant(),
+              1.0, 1e-12);
   EXPECT_GT(Rmse(truth, mirrored, "se3"), 0.1);
 }
 
@@ -113,7 +114,7 @@ ErrorKind Refusal(const geometry::Trajectory& truth, const geometry::Trajectory&
   return ErrorKind::kUsage;
 }
 
-TEST(Alignment, RefusesWhatThePosesDoNotDetermine) {
+TEST(Alignment, RefusesDegeneratePoses) {
   for (const char* file : {"line.txt", "still.txt", "two.txt"}) {
     const auto trajectory = ReadReferenceTrajectory(file);
     for (const char* alignment : {"se3", "sim3", "first:1"}) {
@@ -138,26 +139,26 @@ TEST(Alignment, NoOverlapIsNothingToDo) {
 TEST(Alignment, ScaleIsThatOfSim3AboutTheOrigin) {
   const auto truth = Curve(80);
   const auto pairs = Associate(truth, Moved(Noisy(truth, 4), kSimilar), {});
-  const auto scale = Align(pairs, ParseAlignment("scale"), Eigen::Vector3d::UnitZ());
-  EXPECT_DOUBLE_EQ(scale.scale, Align(pairs, ParseAlignment("sim3"), Eigen::Vector3d::UnitZ()).scale);
+  const auto scale = FitAlignment(pairs, ParseAlignment("scale"), Eigen::Vector3d::UnitZ());
+  EXPECT_DOUBLE_EQ(scale.scale, FitAlignment(pairs, ParseAlignment("sim3"), Eigen::Vector3d::UnitZ()).scale);
   EXPECT_EQ(scale.T_truth_estimate.Matrix(), Eigen::Matrix4d::Identity());
 }
 
-TEST(Alignment, PosYawFindsPositionAndHeadingOnly) {
+TEST(Alignment, PosYawRecoversPositionAndYawOnly) {
   const auto truth = Curve(80);
   const Eigen::Vector3d up = -Eigen::Vector3d::UnitY();
   const Similarity turned{1.0, geometry::SE3(geometry::so3::Exp(-2.5 * up), {4.0, 5.0, -6.0})};
   const auto tilted = Moved(truth, {1.0, geometry::SE3(geometry::so3::Exp({0.2, 0.0, 0.0}), Eigen::Vector3d::Zero())});
   for (const char* name : {"posyaw", "posyaw:1", "posyaw:7", "posyaw:2.5s"}) {
-    const auto found = Align(Associate(truth, Moved(truth, turned), {}), ParseAlignment(name), up);
+    const auto found = FitAlignment(Associate(truth, Moved(truth, turned), {}), ParseAlignment(name), up);
     const geometry::SE3 rest = found.T_truth_estimate * turned.T_truth_estimate;
     EXPECT_LT((rest.Matrix() - Eigen::Matrix4d::Identity()).norm(), 1e-9) << name;
-    const auto level = Align(Associate(truth, tilted, {}), ParseAlignment(name), up);
+    const auto level = FitAlignment(Associate(truth, tilted, {}), ParseAlignment(name), up);
     EXPECT_LT((level.T_truth_estimate.rotation() * up - up).norm(), 1e-12) << name;
   }
 }
 
-TEST(Alignment, PosYawIsTheBestOfAllHeadings) {
+TEST(Alignment, PosYawMinimisesTheErrorOverAllYaws) {
   const auto truth = Curve(80);
   const auto pairs = Associate(truth, Noisy(Moved(truth, kRigid), 5), {});
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
@@ -168,18 +169,18 @@ TEST(Alignment, PosYawIsTheBestOfAllHeadings) {
     }
     return sum;
   };
-  const geometry::SE3 best = Align(pairs, ParseAlignment("posyaw"), up).T_truth_estimate;
+  const geometry::SE3 best = FitAlignment(pairs, ParseAlignment("posyaw"), up).T_truth_estimate;
   for (const double step : {-0.01, 0.01}) {
     EXPECT_LT(cost(best), cost(geometry::SE3(geometry::so3::Exp(step * up), Eigen::Vector3d::Zero()) * best));
     EXPECT_LT(cost(best), cost(geometry::SE3(Eigen::Quaterniond::Identity(), {step, step, step}) * best));
   }
 }
 
-TEST(Alignment, SpansCountPosesOrSeconds) {
+TEST(Alignment, SpansSelectPosesOrSeconds) {
   const auto truth = Curve(80);  // ten poses a second
   const auto pairs = Associate(truth, Noisy(truth, 6), {});
   const auto align = [&](std::span<const PosePair> part, const char* name) {
-    return Align(part, ParseAlignment(name), Eigen::Vector3d::UnitZ()).T_truth_estimate.Matrix();
+    return FitAlignment(part, ParseAlignment(name), Eigen::Vector3d::UnitZ()).T_truth_estimate.Matrix();
   };
   const std::span first(pairs.data(), 31);
   for (const std::string method : {"se3", "sim3", "posyaw", "scale", "origin-scale"}) {
@@ -192,16 +193,16 @@ TEST(Alignment, SpansCountPosesOrSeconds) {
   EXPECT_NE(align(pairs, "sim3:3s"), align(pairs, "sim3"));
 }
 
-TEST(Alignment, PosYawNeedsMotionAcross) {
+TEST(Alignment, PosYawRefusesVerticalMotion) {
   geometry::Trajectory lift;
   for (int i = 0; i < 20; ++i)
     lift.push_back({i * kNsPerSecond, geometry::SE3(Eigen::Quaterniond::Identity(), {0, 0, 0.5 * i})});
   const auto pairs = Associate(lift, lift, {});
-  EXPECT_THROW(Align(pairs, ParseAlignment("posyaw"), Eigen::Vector3d::UnitZ()), Error);
-  EXPECT_EQ(Align(pairs, ParseAlignment("posyaw:1"), Eigen::Vector3d::UnitZ()).scale, 1.0);
+  EXPECT_THROW(FitAlignment(pairs, ParseAlignment("posyaw"), Eigen::Vector3d::UnitZ()), Error);
+  EXPECT_EQ(FitAlignment(pairs, ParseAlignment("posyaw:1"), Eigen::Vector3d::UnitZ()).scale, 1.0);
 }
 
-TEST(Alignment, ReadsNames) {
+TEST(Alignment, ParsesNames) {
   const auto alignments = ParseAlignments("none,first:2.5,sim3,none");
   ASSERT_EQ(alignments.size(), 3u);
   EXPECT_EQ(alignments[1].method, Alignment::Method::kSim3);

@@ -1,4 +1,4 @@
-#include "evo/evaluation/association.hpp"
+#include "evaluation/trajectory/association.hpp"
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ AssociationOptions Nearest(double max_difference_s) {
   return options;
 }
 
-TEST(Association, NearestWalksTheShorterAndMayTakeAStampTwice) {
+TEST(Association, NearestStartsFromTheShorterTrajectoryAndMayReuseStamps) {
   const auto truth = AtMilliseconds({0, 100, 200, 300});
   const auto pairs = Associate(truth, AtMilliseconds({96, 104, 290}), Nearest(0.01));
   ASSERT_EQ(pairs.size(), 3u);
@@ -54,7 +54,7 @@ AssociationOptions Rule(const std::string& association, double max_difference_s)
   return options;
 }
 
-TEST(Association, UniqueTakesTheNearestTwoFirst) {
+TEST(Association, UniqueMatchesTheNearestTwoFirst) {
   const auto truth = AtMilliseconds({0, 100, 110, 200});
   // 104 is nearest to 100 and 106 to 110, but 103 would be nearer to 100 than to anything that is left.
   const auto pairs = Associate(truth, AtMilliseconds({103, 104, 108, 290}), Rule("unique", 0.2));
@@ -98,7 +98,7 @@ TEST(Association, UniqueIsTheGreedyChoiceAmongAllPairs) {
   }
 }
 
-TEST(Association, NearestTruthWalksTheEstimate) {
+TEST(Association, NearestTruthStartsFromTheEstimate) {
   const auto truth = AtMilliseconds({0, 50, 100});
   const auto estimate = AtMilliseconds({10, 20, 60, 140, 199, 201});
   const auto pairs = Associate(truth, estimate, Rule("nearest-truth", -1.0));  // up to twice 50 ms
@@ -122,7 +122,7 @@ TEST(Association, IndexPairsPoseByPose) {
   }
 }
 
-TEST(Association, OffsetMovesTheEstimateWhicheverIsShorter) {
+TEST(Association, OffsetAppliesToTheEstimateWhicheverIsShorter) {
   AssociationOptions options = Nearest(0.001);
   options.estimate_clock_offset_s = -0.05;
   const auto few = AtMilliseconds({100, 200});
@@ -135,7 +135,7 @@ TEST(Association, OffsetMovesTheEstimateWhicheverIsShorter) {
   EXPECT_EQ(many_estimated[0].t_estimate, 150 * kMs);
 }
 
-TEST(Association, InterpolationMeetsTheTruthBetweenItsPoses) {
+TEST(Association, InterpolationIsExactBetweenTruePoses) {
   const auto pairs = Associate(AtMilliseconds({0, 50, 100}), AtMilliseconds({0, 13, 50, 99}), {});
   ASSERT_EQ(pairs.size(), 4u);
   for (const auto& pair : pairs) {
@@ -144,7 +144,7 @@ TEST(Association, InterpolationMeetsTheTruthBetweenItsPoses) {
   }
 }
 
-TEST(Association, InterpolationNeitherExtrapolatesNorBridgesHoles) {
+TEST(Association, InterpolationNeitherExtrapolatesNorBridgesGaps) {
   const auto truth = AtMilliseconds({100, 200, 900, 1000});
   const auto pairs = Associate(truth, AtMilliseconds({99, 100, 150, 200, 201, 899, 900, 1000, 1001}), {});
   ASSERT_EQ(pairs.size(), 5u);

@@ -43,7 +43,7 @@ class DepthTruthTest : public ::testing::Test {
        std::to_string(::getpid()) + ".hdf5");
 };
 
-TEST_F(DepthTruthTest, PerfectTrackOnATiltedPlaneIsTheTruthWhereverItBegins) {
+TEST_F(DepthTruthTest, PerfectTracksOnATiltedPlaneEqualTheTruth) {
   TrackScene scene;
   scene.walls = {{Eigen::Vector3d(0.06, -0.03, 0.1)}};
   scene.velocity = {4.0, 0.5, 6.0};
@@ -53,13 +53,13 @@ TEST_F(DepthTruthTest, PerfectTrackOnATiltedPlaneIsTheTruthWhereverItBegins) {
     const events::Tracks track = scene.Follow(3, {80.3, 60.8}, from, from + 0.2);
     const auto truth = Find(scene, track);
     ASSERT_EQ(truth.size(), 1u);
-    EXPECT_EQ(truth[0].verdict, TrackVerdict::kJudged);
+    EXPECT_EQ(truth[0].status, TrackStatus::kEvaluated);
     EXPECT_TRUE(truth[0].starts_at_observation);
     EXPECT_LT(LargestError(track, truth[0]), kFloatPx) << from;
   }
 }
 
-TEST_F(DepthTruthTest, FollowsTheLensOfTheRawImage) {
+TEST_F(DepthTruthTest, IncludesLensDistortion) {
   TrackScene scene;
   scene.camera = testing::MvsecCamera();
   scene.velocity = {0.3, 0.0, 3.0};
@@ -70,7 +70,7 @@ TEST_F(DepthTruthTest, FollowsTheLensOfTheRawImage) {
   }
 }
 
-TEST_F(DepthTruthTest, ATrackThatDriftsDoesNotMoveTheTruth) {
+TEST_F(DepthTruthTest, TrackDriftDoesNotChangeTheTruth) {
   const TrackScene scene;
   const events::Tracks perfect = scene.Follow(1, {150, 75}, 0.2, 1.0);
   events::Tracks drifting = perfect;
@@ -92,7 +92,7 @@ TEST_F(DepthTruthTest, VisibleUntilThePosesEnd) {
   EXPECT_EQ(Find(scene, scene.Follow(1, {150, 75}, 0.3, 0.4))[0].visible_until, scene.Stamp(scene.seconds));
 }
 
-TEST_F(DepthTruthTest, VisibleUntilSomethingHidesIt) {
+TEST_F(DepthTruthTest, VisibleUntilThePointIsOccluded) {
   TrackScene scene;
   scene.walls.push_back({Eigen::Vector3d(0, 0, 0.2), 1.0, 9.0});  // 5 m ahead, from x = 1 m on
   // The point is at x = 1 m on the far wall: hidden once the camera has come to 1 m, after 1 s.
@@ -107,31 +107,31 @@ TEST_F(DepthTruthTest, VisibleUntilSomethingHidesIt) {
 }
 
 /// Two px to the right of x = 119 begins a nearer wall, which moves twice as fast in the image.
-TEST_F(DepthTruthTest, ATrackBesideAnEdgeMayBeOnEitherSurface) {
+TEST_F(DepthTruthTest, TracksAtADepthEdgeMayLieOnEitherSurface) {
   TrackScene scene;
   scene.walls.push_back({Eigen::Vector3d(0, 0, 0.2), 1.05, 9.0});  // 5 m ahead, seen from x = 121 on
   TrackScene near;
   near.walls = {{Eigen::Vector3d(0, 0, 0.2)}};
   const events::Tracks with_wall = near.Follow(1, {119, 75}, 0.0, 0.8);
   const auto truth = Find(scene, with_wall);
-  ASSERT_EQ(truth[0].verdict, TrackVerdict::kJudged);
-  ASSERT_EQ(truth[0].beside.size(), 1u);
+  ASSERT_EQ(truth[0].status, TrackStatus::kEvaluated);
+  ASSERT_EQ(truth[0].other_surfaces.size(), 1u);
   for (std::size_t i = 0; i < with_wall.size(); ++i) {
     const Eigen::Vector2d seen(with_wall[i].x, with_wall[i].y);
-    ASSERT_TRUE(truth[0].beside[0][i]) << i;
-    EXPECT_LT((*truth[0].beside[0][i] - seen).norm(), kFloatPx) << i;
+    ASSERT_TRUE(truth[0].other_surfaces[0][i]) << i;
+    EXPECT_LT((*truth[0].other_surfaces[0][i] - seen).norm(), kFloatPx) << i;
   }
   const auto accuracy =
       EvaluateTracks(GroupById(with_wall), truth, "depth", {0.5});  // the wall soon hides the point behind it
-  EXPECT_EQ(accuracy.thresholds[0].mostly_exceeding_share, 1.0);
-  EXPECT_EQ(accuracy.thresholds[0].stray_share, 0.0);
+  EXPECT_EQ(accuracy.thresholds[0].median_exceeding_ratio, 1.0);
+  EXPECT_EQ(accuracy.thresholds[0].false_track_ratio, 0.0);
   TrackTruthOptions narrow;
-  narrow.surface_reach_px = 1.0;
-  EXPECT_TRUE(Find(scene, with_wall, narrow)[0].beside.empty());
-  EXPECT_TRUE(Find(scene, near.Follow(1, {110, 75}, 0.0, 0.8))[0].beside.empty()) << "far from the edge";
+  narrow.surface_radius_px = 1.0;
+  EXPECT_TRUE(Find(scene, with_wall, narrow)[0].other_surfaces.empty());
+  EXPECT_TRUE(Find(scene, near.Follow(1, {110, 75}, 0.0, 0.8))[0].other_surfaces.empty()) << "far from the edge";
 }
 
-TEST_F(DepthTruthTest, WhatMovesIsNotJudged) {
+TEST_F(DepthTruthTest, TracksOnMovingObjectsAreNotEvaluated) {
   TrackScene scene;
   scene.walls.push_back({Eigen::Vector3d(0, 0, 0.2), 1.05, 9.0, true});
   events::Tracks tracks;
@@ -140,12 +140,12 @@ TEST_F(DepthTruthTest, WhatMovesIsNotJudged) {
     tracks.insert(tracks.end(), track.begin(), track.end());
   }
   const auto truth = Find(scene, tracks);
-  EXPECT_EQ(truth[0].verdict, TrackVerdict::kMoves);
-  EXPECT_EQ(truth[1].verdict, TrackVerdict::kMoves);
-  EXPECT_EQ(truth[2].verdict, TrackVerdict::kJudged);
+  EXPECT_EQ(truth[0].status, TrackStatus::kMovingObject);
+  EXPECT_EQ(truth[1].status, TrackStatus::kMovingObject);
+  EXPECT_EQ(truth[2].status, TrackStatus::kEvaluated);
 }
 
-TEST_F(DepthTruthTest, NoDepthNoJudgement) {
+TEST_F(DepthTruthTest, TracksWithoutDepthAreNotEvaluated) {
   TrackScene scene;
   scene.walls = {{Eigen::Vector3d(0, 0, 0.1), -2.0, 1e9}, {Eigen::Vector3d(0, 0, 0.2), 1.0, 9.0}};
   events::Tracks tracks;
@@ -157,24 +157,24 @@ TEST_F(DepthTruthTest, NoDepthNoJudgement) {
   add(3, 300.0);  // off the sensor
   for (std::int64_t id = 4; id < 20; ++id) add(id, 90.0);
   const auto truth = Find(scene, tracks);
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(truth[i].verdict, TrackVerdict::kNoDepth) << i;
-  EXPECT_EQ(truth[3].verdict, TrackVerdict::kJudged);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(truth[i].status, TrackStatus::kNoDepth) << i;
+  EXPECT_EQ(truth[3].status, TrackStatus::kEvaluated);
   TrackTruthOptions lenient;
-  lenient.depth_edge = 1.0;
-  EXPECT_EQ(Find(scene, tracks, lenient)[1].verdict, TrackVerdict::kJudged);
+  lenient.depth_edge_ratio = 1.0;
+  EXPECT_EQ(Find(scene, tracks, lenient)[1].status, TrackStatus::kEvaluated);
 }
 
 TEST_F(DepthTruthTest, OutsideTheTimeOfPosesAndMapsThereIsNoTruth) {
   const TrackScene scene;
   events::Tracks tracks{{1, testing::kSceneStart - kNsPerSecond, 90, 75}, {1, testing::kSceneStart, 90, 75}};
-  EXPECT_EQ(Find(scene, tracks)[0].verdict, TrackVerdict::kNoTruth);
+  EXPECT_EQ(Find(scene, tracks)[0].status, TrackStatus::kNoTruth);
   scene.WriteGroundTruth(path);
   TrackScene longer = scene;  // poses go on where the maps have ended
   longer.seconds = 4.0;
   tracks = longer.Follow(1, {90, 75}, 2.5, 3.0);
   const auto truth = TruthFromDepth(GroupById(tracks), longer.Poses(), scene.camera, io::DepthMapReader(path),
                                     kNsPerSecond, TrackTruthOptions());
-  EXPECT_EQ(truth[0].verdict, TrackVerdict::kNoDepth);
+  EXPECT_EQ(truth[0].status, TrackStatus::kNoDepth);
 }
 
 TEST_F(DepthTruthTest, RefusesMapsAndTracksOfAnotherCamera) {

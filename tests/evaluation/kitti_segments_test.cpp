@@ -1,4 +1,4 @@
-#include "evo/evaluation/kitti_segments.hpp"
+#include "evaluation/trajectory/kitti_segments.hpp"
 
 #include <gtest/gtest.h>
 
@@ -26,14 +26,14 @@ std::vector<geometry::SE3> ReadKittiPoses(const std::string& name) {
   }
 }
 
-MatchedPath ReadKittiPath() {
+MatchedTrajectory ReadKittiPath() {
   const auto truth = ReadKittiPoses("kitti_gt.txt");
   const auto estimate = ReadKittiPoses("kitti_est.txt");
   std::vector<PosePair> pairs;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     pairs.push_back({static_cast<TimeNs>(i), static_cast<TimeNs>(i), estimate.at(i), truth.at(i)});
   }
-  return MatchPath(pairs, {});
+  return BuildMatchedTrajectory(pairs, {});
 }
 
 /// `n` poses 1 m apart along x; the estimate is `scale` times as long and turns by `turn` rad a pose about z.
@@ -87,8 +87,8 @@ TEST(KittiSegments, MatchKissIcpToSinglePrecision) {
   EXPECT_NEAR(segments.rotation_deg_per_m.mean, rotation * 3.14 / std::numbers::pi, 1e-10);
 }
 
-TEST(KittiSegments, KnowAStraightLine) {
-  const auto path = MatchPath(StraightLine(101, 1.1, 0.001), {});
+TEST(KittiSegments, AreExactOnAStraightLine) {
+  const auto path = BuildMatchedTrajectory(StraightLine(101, 1.1, 0.001), {});
   const auto segments = ComputeKittiSegments(path, std::vector{20.0, 1000.0}, 10);
   ASSERT_EQ(segments.lengths.size(), 1U);  // none of 1000 m fits
   // The end is the first pose farther than 20 m: 21 m on. Starts at 0, 10, ..., 70.
@@ -102,8 +102,9 @@ TEST(KittiSegments, KnowAStraightLine) {
   EXPECT_NEAR(result.translation_percent.max, 100.0 * error(0.07) / 20.0, 1e-9);
 }
 
-TEST(KittiSegments, HoldNothingWhereNoLengthFits) {
-  const auto segments = ComputeKittiSegments(MatchPath(StraightLine(9, 1.0, 0.0), {}), kDefaultLengths, 10);
+TEST(KittiSegments, AreEmptyIfNoLengthFits) {
+  const auto segments =
+      ComputeKittiSegments(BuildMatchedTrajectory(StraightLine(9, 1.0, 0.0), {}), kDefaultLengths, 10);
   EXPECT_TRUE(segments.lengths.empty());
   EXPECT_EQ(segments.translation_percent.count, 0);
   EXPECT_TRUE(std::isnan(segments.translation_percent.mean));
@@ -114,17 +115,17 @@ TEST(KittiSegments, IgnoreRigidMotionsButNotScale) {
   const auto pairs = StraightLine(101, 1.1, 0.001);
   const std::vector<double> lengths = {20.0};
   const Similarity motion{1.0, geometry::SE3(geometry::so3::Exp({0.3, -2.0, 0.5}), Eigen::Vector3d(5, 6, 7))};
-  const auto plain = ComputeKittiSegments(MatchPath(pairs, {}), lengths, 1);
-  const auto moved = ComputeKittiSegments(MatchPath(pairs, motion), lengths, 1);
+  const auto plain = ComputeKittiSegments(BuildMatchedTrajectory(pairs, {}), lengths, 1);
+  const auto moved = ComputeKittiSegments(BuildMatchedTrajectory(pairs, motion), lengths, 1);
   EXPECT_NEAR(moved.translation_percent.rmse, plain.translation_percent.rmse, 1e-10);
   EXPECT_NEAR(moved.rotation_deg_per_m.rmse, plain.rotation_deg_per_m.rmse, 1e-12);
-  const auto scaled =
-      ComputeKittiSegments(MatchPath(StraightLine(101, 1.1, 0.0), {1.0 / 1.1, geometry::SE3()}), lengths, 1);
+  const auto scaled = ComputeKittiSegments(
+      BuildMatchedTrajectory(StraightLine(101, 1.1, 0.0), {1.0 / 1.1, geometry::SE3()}), lengths, 1);
   EXPECT_NEAR(scaled.translation_percent.max, 0.0, 1e-10);
 }
 
 // Stops and uneven steps: the ends must be those of a search from the start, as the kit makes it.
-TEST(KittiSegments, FindTheEndsOfALinearSearch) {
+TEST(KittiSegments, AgreeWithALinearSearch) {
   std::mt19937 random(7);
   std::vector<PosePair> pairs;
   double x = 0.0;
@@ -146,13 +147,13 @@ TEST(KittiSegments, FindTheEndsOfALinearSearch) {
         break;
       }
     }
-    const auto segments = ComputeKittiSegments(MatchPath(pairs, {}), std::vector{length}, 3);
+    const auto segments = ComputeKittiSegments(BuildMatchedTrajectory(pairs, {}), std::vector{length}, 3);
     EXPECT_EQ(segments.translation_percent.count, count);
     EXPECT_NEAR(segments.translation_percent.mean, sum / static_cast<double>(count), 1e-9);
   }
 }
 
-TEST(Lengths, AreMetresOrSharesOfThePath) {
+TEST(Lengths, AreMetresOrPercentOfThePath) {
   EXPECT_EQ(ParseLengths("100,50m,10%", 30.0), (std::vector{100.0, 50.0, 3.0}));
   EXPECT_EQ(ParseLengths("5,10%", 0.0), std::vector{5.0});
   EXPECT_EQ(ParseLengths("5,5m,10%", 50.0), std::vector{5.0});  // else its segments would count several times

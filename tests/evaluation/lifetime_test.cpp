@@ -27,7 +27,7 @@ events::Tracks Sorted(events::Tracks tracks) {
   return tracks;
 }
 
-TEST(Lifetime, CountsFramesAndSecondsOfTracksThatCount) {
+TEST(Lifetime, CountsFramesAndSecondsOfLongTracks) {
   events::Tracks tracks;
   Append(&tracks, 1, 0, 3);
   Append(&tracks, 2, 2, 5);
@@ -38,7 +38,7 @@ TEST(Lifetime, CountsFramesAndSecondsOfTracksThatCount) {
   EXPECT_EQ(statistics.frames, 20);
   EXPECT_EQ(statistics.tracks, 3);
   EXPECT_EQ(statistics.tracks_too_short, 2);
-  EXPECT_EQ(statistics.tracks_cut_short, 0);
+  EXPECT_EQ(statistics.tracks_censored, 0);
   EXPECT_DOUBLE_EQ(statistics.in_frames.mean, 6.0);
   EXPECT_DOUBLE_EQ(statistics.in_frames.median, 5.0);
   EXPECT_DOUBLE_EQ(statistics.in_frames.max, 10.0);
@@ -47,7 +47,7 @@ TEST(Lifetime, CountsFramesAndSecondsOfTracksThatCount) {
   EXPECT_DOUBLE_EQ(statistics.in_seconds.max, 0.225);
 }
 
-TEST(Lifetime, PartByPartIsTheSame) {
+TEST(Lifetime, PartsGiveTheSameAsTheWhole) {
   events::Tracks tracks;
   for (int i = 0; i < 300; ++i) Append(&tracks, i, i / 2, 1 + i % 40);
   tracks = Sorted(tracks);
@@ -60,10 +60,10 @@ TEST(Lifetime, PartByPartIsTheSame) {
     counter.EndBefore(tracks[end - 1].t);
   }
   const auto parts = counter.Statistics(stamps);
-  EXPECT_GT(whole.tracks_cut_short, 0);
+  EXPECT_GT(whole.tracks_censored, 0);
   EXPECT_EQ(parts.tracks, whole.tracks);
   EXPECT_EQ(parts.tracks_too_short, whole.tracks_too_short);
-  EXPECT_EQ(parts.tracks_cut_short, whole.tracks_cut_short);
+  EXPECT_EQ(parts.tracks_censored, whole.tracks_censored);
   EXPECT_EQ(parts.in_frames.mean, whole.in_frames.mean);
   EXPECT_EQ(parts.in_seconds.standard_deviation, whole.in_seconds.standard_deviation);
   EXPECT_EQ(parts.in_seconds.median, whole.in_seconds.median);
@@ -73,7 +73,7 @@ TEST(Lifetime, PartByPartIsTheSame) {
   }
 }
 
-TEST(Lifetime, HistogramInSecondsSharesItsBinsOutEvenly) {
+TEST(Lifetime, BinsInSecondsHoldEquallyManyLifetimes) {
   events::Tracks tracks;
   for (int i = 0; i < 120; ++i) Append(&tracks, i, 0, 3 + i);  // one track for each lifetime of 2 to 121 intervals
   const auto statistics = ComputeLifetimes(Sorted(tracks), FrameStamps(130));
@@ -96,21 +96,21 @@ TEST(Lifetime, NeedsNoFramesForSeconds) {
   EXPECT_EQ(statistics.histogram_seconds.back().tracks, 1);
 }
 
-TEST(Lifetime, TakesTheMeanOfTheTwoMiddleValuesAsMedian) {
+TEST(Lifetime, MedianOfAnEvenCountIsTheMeanOfTheMiddleTwo) {
   events::Tracks tracks;
   Append(&tracks, 1, 0, 4);
   Append(&tracks, 2, 0, 7);
   EXPECT_DOUBLE_EQ(ComputeLifetimes(Sorted(tracks), FrameStamps(10)).in_frames.median, 5.5);
 }
 
-TEST(Lifetime, ReportsTracksThatTheEndOfTheRecordingCuts) {
+TEST(Lifetime, CountsCensoredTracks) {
   events::Tracks tracks;
   Append(&tracks, 1, 0, 5);
   Append(&tracks, 2, 5, 5);
-  EXPECT_EQ(ComputeLifetimes(Sorted(tracks), FrameStamps(10)).tracks_cut_short, 1);
+  EXPECT_EQ(ComputeLifetimes(Sorted(tracks), FrameStamps(10)).tracks_censored, 1);
 }
 
-TEST(Lifetime, HistogramHoldsEveryTrackOnceInBinsWithoutHoles) {
+TEST(Lifetime, HistogramIsContiguousAndHoldsEveryTrackOnce) {
   for (const int longest : {3, 62, 63, 120, 700, 5000}) {
     events::Tracks tracks;
     Append(&tracks, 0, 0, longest);
@@ -119,7 +119,7 @@ TEST(Lifetime, HistogramHoldsEveryTrackOnceInBinsWithoutHoles) {
     const auto& bins = statistics.histogram;
     ASSERT_FALSE(bins.empty());
     EXPECT_LE(bins.size(), 60u);
-    EXPECT_EQ(bins.front().low, kFewestFrames);
+    EXPECT_EQ(bins.front().low, kMinLifetimeFrames);
     EXPECT_LT(bins.back().low, longest + 1);
     EXPECT_GT(bins.back().high, longest);
     for (std::size_t i = 1; i < bins.size(); ++i) EXPECT_EQ(bins[i].low, bins[i - 1].high);

@@ -1,4 +1,4 @@
-#include "evo/evaluation/pair_selection.hpp"
+#include "evaluation/trajectory/pair_selection.hpp"
 
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ std::vector<std::pair<int, int>> Select(const std::vector<geometry::StampedPose>
 
 using Pairs = std::vector<std::pair<int, int>>;
 
-TEST(PairSelection, ReadsDeltas) {
+TEST(PairSelection, ParsesDeltas) {
   const auto deltas = ParseDeltas("10f,0.5s,10m,5deg,0.1rad,10m");
   ASSERT_EQ(deltas.size(), 5u);
   EXPECT_EQ(deltas[1].unit, DeltaUnit::kSeconds);
@@ -68,7 +68,7 @@ TEST(PairSelection, Frames) {
   }
 }
 
-TEST(PairSelection, MetresBeginAtTheFirstCrossing) {
+TEST(PairSelection, MetresStartAtTheFirstCrossing) {
   const auto poses = Along({0, 0.6, 1.2, 1.8, 2.4, 3.0, 3.6});
   EXPECT_EQ(Select(poses, "1m", "consecutive"), (Pairs{{2, 4}, {4, 6}}));
   EXPECT_EQ(Select(poses, "1m", "all"), Pairs{});  // 0.6 and 1.2 are not within 10 %
@@ -76,19 +76,19 @@ TEST(PairSelection, MetresBeginAtTheFirstCrossing) {
   EXPECT_EQ(Select(poses, "1m", "closest").size(), 4u);
 }
 
-TEST(PairSelection, AnglesBeginAtTheFirstPose) {
+TEST(PairSelection, AnglesStartAtTheFirstPose) {
   const auto poses = Along({0, 6, 12, 18, 24, 30});  // degrees too
   EXPECT_EQ(Select(poses, "10deg", "consecutive"), (Pairs{{0, 2}, {2, 4}}));
   EXPECT_EQ(Select(poses, "12deg", "all"), (Pairs{{0, 2}, {1, 3}, {2, 4}, {3, 5}}));
   EXPECT_EQ(Select(poses, "0.2094395rad", "all"), Select(poses, "12deg", "all"));
 }
 
-TEST(PairSelection, DirectAnglesMayHaveSeveralEnds) {
+TEST(PairSelection, AnglesOfAllPairsMayHaveSeveralEnds) {
   const auto poses = Along({0, 10, 10.5, 0, 10});
   EXPECT_EQ(Select(poses, "10deg", "all"), (Pairs{{0, 1}, {0, 2}, {0, 4}, {1, 3}, {2, 3}, {3, 4}}));
 }
 
-TEST(PairSelection, TooManyDirectAnglesAreRefused) {
+TEST(PairSelection, TooManyPairsByAngleAreRefused) {
   std::vector<double> positions;  // each pose is turned by 10 degrees against every second one
   for (int i = 0; i < 7000; ++i) positions.push_back(i % 2 ? 10.0 : 0.0);
   EXPECT_THROW(Select(Along(positions), "10deg", "all"), Error);
@@ -103,7 +103,7 @@ TEST(PairSelection, SecondsByHand) {
   EXPECT_EQ(Select(poses, "1s", "all", 0.0), (Pairs{{1, 3}, {5, 7}}));
 }
 
-TEST(PairSelection, AllPairsAreThoseOfASearchThroughAll) {
+TEST(PairSelection, AllPairsAgreeWithAnExhaustiveSearch) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> step(0.0, 0.5);
   std::vector<double> positions{0.0};

@@ -16,7 +16,7 @@ void ExpectPose(const geometry::SE3& actual, const Eigen::Quaterniond& rotation,
   EXPECT_LT((actual.Matrix() - geometry::SE3(rotation, position).Matrix()).norm(), 1e-12);
 }
 
-TEST(Projection, KeepsTheTurnAboutTheNormalOnly) {
+TEST(Projection, KeepsOnlyTheRotationAboutTheNormal) {
   const geometry::SE3 pose(Turn(0.3, -0.7, 2.1), {1, 2, 3});
   ExpectPose(Project(pose, "none"), pose.rotation(), {1, 2, 3});
   ExpectPose(Project(pose, "xy"), Turn(0, 0, 2.1), {1, 2, 0});
@@ -24,7 +24,7 @@ TEST(Projection, KeepsTheTurnAboutTheNormalOnly) {
   ExpectPose(Project(pose, "yz"), Turn(0.3, 0, 0), {0, 2, 3});
 }
 
-TEST(Projection, ASecondTimeChangesNothing) {
+TEST(Projection, IsIdempotent) {
   const geometry::SE3 pose(Turn(-0.4, 0.5, -3.0), {1, 2, 3});
   for (const char* plane : {"xy", "xz", "yz"}) {
     const geometry::SE3 once = Project(pose, plane);
@@ -32,7 +32,7 @@ TEST(Projection, ASecondTimeChangesNothing) {
   }
 }
 
-TEST(Projection, SurvivesTheGimbalLock) {
+TEST(Projection, HandlesGimbalLock) {
   const geometry::SE3 pose(Turn(0.4, 0.5 * std::numbers::pi, 0.0), {1, 2, 3});
   for (const char* plane : {"xy", "xz", "yz"}) EXPECT_TRUE(Project(pose, plane).Matrix().allFinite()) << plane;
   ExpectPose(Project(pose, "xz"), Turn(0, 0.5 * std::numbers::pi, 0), {1, 0, 3});

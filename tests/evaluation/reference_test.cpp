@@ -128,7 +128,7 @@ void ExpectEqual(const Statistics& statistics, const std::map<std::string, std::
   ExpectEqual(statistics.max, row.at("max"), tolerance, name + " max");
 }
 
-TEST(EvoReference, EveryRowOfItsTable) {
+TEST(EvoReference, EveryRowOfEvosTable) {
   int rows = 0;
   for (const auto& row : ReadReferenceTable("reference.csv")) {
     const std::string& name = row.at("name");
@@ -153,7 +153,7 @@ std::optional<ErrorKind> Refusal(const Question& question) {
   }
 }
 
-TEST(EvoReference, RefusesWhatItRefuses) {
+TEST(EvoReference, RefusesWhatEvoRefuses) {
   const std::map<std::string, ErrorKind> refused{
       {"ape_se3_d002_est_sim3", ErrorKind::kNothingToDo},  {"ape_se3_d002_est_se3", ErrorKind::kNothingToDo},
       {"ape_se3_d002_est_drift", ErrorKind::kNothingToDo}, {"deg_line", ErrorKind::kDegenerateAlignment},
@@ -253,7 +253,7 @@ TEST(RpgReference, AbsoluteErrorsOfEveryAlignment) {
   EXPECT_EQ(rows, 42);
 }
 
-TEST(DrivingReference, SplitsAlongTheTravelAndTheBody) {
+TEST(PathFrameReference, ResolvesAlongTravelAndBody) {
   const auto rows = ReadReferenceTable("lonlat_reference.csv");
   ASSERT_EQ(rows.size(), 2u);
   for (const auto& row : rows) {

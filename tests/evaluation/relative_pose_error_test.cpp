@@ -1,4 +1,4 @@
-#include "evo/evaluation/relative_pose_error.hpp"
+#include "evaluation/trajectory/relative_pose_error.hpp"
 
 #include <gtest/gtest.h>
 
@@ -62,7 +62,7 @@ TEST(RelativePoseError, DoesNotDependOnEitherWorldFrame) {
   }
 }
 
-TEST(RelativePoseError, ScaleErrsInProportion) {
+TEST(RelativePoseError, GrowsWithTheScaleError) {
   const auto truth = Curve(100, 0.0);
   const auto rpe = Rpe(truth, Moved(truth, {1.1, geometry::SE3()}), "all", "7f").front().relations;
   EXPECT_NEAR(Find(rpe, PoseRelation::kPointDistanceRatio).min, 10.0, 1e-9);
@@ -71,7 +71,7 @@ TEST(RelativePoseError, ScaleErrsInProportion) {
   EXPECT_NEAR(Find(rpe, PoseRelation::kRotationRad).max, 0.0, 1e-7);
 }
 
-TEST(RelativePoseError, RelationsOfOneKnownMotion) {
+TEST(RelativePoseError, AllRelationsOfAKnownMotion) {
   // The truth moves 2 m ahead; the estimate 2 m ahead and 1 m aside while it turns by 0.5 rad.
   const geometry::Trajectory truth{{0, geometry::SE3()},
                                    {kNsPerSecond, geometry::SE3(Eigen::Quaterniond::Identity(), {0, 0, 2})}};
@@ -103,7 +103,7 @@ TEST(RelativePoseError, StandingStillHasNoRatio) {
   EXPECT_TRUE(std::isnan(Find(rpe, PoseRelation::kPointDistanceRatio).rmse));
 }
 
-TEST(RelativePoseError, TooLongADeltaIsEmptyOrRefused) {
+TEST(RelativePoseError, TooLongDeltasAreEmptyOrRefused) {
   const auto truth = Curve(20, 0.0);
   EvaluationOptions options;
   options.rpe.deltas = "1000m";
@@ -119,7 +119,7 @@ TEST(RelativePoseError, TooLongADeltaIsEmptyOrRefused) {
   }
 }
 
-TEST(RelativePoseError, PairsFromTheTruthFollowItsPath) {
+TEST(RelativePoseError, PairsMayFollowTheTruth) {
   const auto truth = Curve(100, 0.0);
   const auto estimate = Moved(truth, {2.0, geometry::SE3()});
   EvaluationOptions options;

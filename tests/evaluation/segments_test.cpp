@@ -1,16 +1,18 @@
-#include "evo/evaluation/segments.hpp"
+#include "evaluation/trajectory/segments.hpp"
 
 #include <gtest/gtest.h>
 
 #include "evo/core/error.hpp"
+#include "evo/core/parameters.hpp"
 
 namespace evo::evaluation {
 namespace {
 
-TEST(SegmentOptions, AreReadAsTheyArePrinted) {
-  SegmentOptions options;
+TEST(SegmentOptions, SurviveARoundTripThroughYaml) {
+  EvaluationOptions all;
+  SegmentOptions& options = all.segments;
   Parameters parameters;
-  Register(parameters, options);
+  Register(parameters, all);
   options.subtrajectory_lengths = "10m,50%";
   const std::string yaml = parameters.ToYaml();
   options = {};
@@ -19,10 +21,11 @@ TEST(SegmentOptions, AreReadAsTheyArePrinted) {
   EXPECT_EQ(options.kitti_lengths_m, SegmentOptions().kitti_lengths_m);
 }
 
-TEST(SegmentOptions, NameTheLineOfALengthThatIsNone) {
-  SegmentOptions options;
+TEST(SegmentOptions, InvalidLengthsNameTheirLine) {
+  EvaluationOptions all;
+  SegmentOptions& options = all.segments;
   Parameters parameters;
-  Register(parameters, options);
+  Register(parameters, all);
   try {
     parameters.LoadText("evaluation:\n  kitti_lengths_m: 100,far\n", "mine.yaml");
     FAIL() << "accepted";
@@ -33,7 +36,7 @@ TEST(SegmentOptions, NameTheLineOfALengthThatIsNone) {
   EXPECT_EQ(options.kitti_lengths_m, SegmentOptions().kitti_lengths_m);
 }
 
-TEST(Segments, SharesAreThoseOfThePath) {
+TEST(Segments, PercentagesReferToThePath) {
   std::vector<PosePair> pairs;
   for (int i = 0; i <= 100; ++i) {
     const geometry::SE3 pose(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0.1 * i, 0, 0));
@@ -41,7 +44,8 @@ TEST(Segments, SharesAreThoseOfThePath) {
   }
   SegmentOptions options;
   options.kitti_lengths_m = "20%,90%";
-  const auto result = EvaluateSegments(MatchPath(pairs), Eigen::Vector3d::UnitZ(), 0, kNsPerSecond, options);
+  const auto result =
+      EvaluateSegments(BuildMatchedTrajectory(pairs), Eigen::Vector3d::UnitZ(), 0, kNsPerSecond, options);
   ASSERT_EQ(result.kitti.lengths.size(), 2U);
   EXPECT_NEAR(result.kitti.lengths[1].length_m, 9.0, 1e-9);
   ASSERT_EQ(result.sub_trajectories.size(), 5U);

@@ -1,4 +1,4 @@
-#include "evo/evaluation/sub_trajectories.hpp"
+#include "evaluation/trajectory/sub_trajectories.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +9,7 @@
 #include <random>
 
 #include "evaluation/reference.hpp"
+#include "evaluation/trajectory/alignment_fit.hpp"
 
 namespace evo::evaluation {
 namespace {
@@ -22,7 +23,7 @@ using Row = std::map<std::string, std::string>;
 Similarity AlignAsReference(std::span<const PosePair> pairs, const std::string& alignment, int n) {
   std::string name = alignment == "se3" && n == 1 ? "origin" : alignment;
   if (n > 0 && name != "origin") name += ":" + std::to_string(n);
-  return Align(pairs, ParseAlignment(name), kUp);
+  return FitAlignment(pairs, ParseAlignment(name), kUp);
 }
 
 /// Pairs as the program makes them: stamps up to 0.02 s apart, the nearest first, each used once.
@@ -38,12 +39,12 @@ std::map<std::string, Statistics> ByLabel(const SubTrajectoryErrors& errors) {
           {"yaw", errors.yaw_deg},         {"gravity", errors.gravity_deg}};
 }
 
-std::map<std::string, Statistics> AbsoluteErrors(const MatchedPath& path) {
+std::map<std::string, Statistics> AbsoluteErrors(const MatchedTrajectory& path) {
   std::vector<double> translations;
   std::vector<double> rotations;
   for (std::size_t i = 0; i < path.size(); ++i) {
     translations.push_back((path.estimate[i] - path.truth[i]).norm());
-    rotations.push_back(kDegrees * Angle(path.difference[i]));
+    rotations.push_back(kDegrees * RotationAngle(path.rotation_error[i]));
   }
   return {{"trans", ComputeStatistics(translations)}, {"rot", ComputeStatistics(rotations)}};
 }
@@ -95,7 +96,8 @@ std::vector<int> FindEnds(const std::vector<double>& distance, double length) {
 }
 
 /// Errors between the poses i and ends[i].
-std::map<std::string, Statistics> ErrorsBetween(const MatchedPath& path, const std::vector<int>& ends, double length) {
+std::map<std::string, Statistics> ErrorsBetween(const MatchedTrajectory& path, const std::vector<int>& ends,
+                                                double length) {
   std::map<std::string, std::vector<double>> errors;
   for (std::size_t i = 0; i < ends.size(); ++i) {
     if (ends[i] < 0) continue;
@@ -118,7 +120,7 @@ std::map<std::string, Statistics> ErrorsBetween(const MatchedPath& path, const s
 }
 
 /// The statistics that belong to a row: absolute errors over `absolute`, those of sub-trajectories over `relative`.
-Statistics Find(const Row& row, const MatchedPath& absolute, const MatchedPath& relative) {
+Statistics Find(const Row& row, const MatchedTrajectory& absolute, const MatchedTrajectory& relative) {
   const double length = Length(row);
   if (length == 0.0) return AbsoluteErrors(absolute).at(row.at("label"));
   return ByLabel(ComputeSubTrajectoryErrors(relative, std::vector{length}, kUp).at(0)).at(row.at("label"));
@@ -137,8 +139,8 @@ TEST(RpgReference, EveryRowCoincidesInTheProgramsFrame) {
   for (const auto& row : reference.rows) {
     const auto& pairs = reference.pairs.at(row.at("est"));
     const Similarity similarity = reference.AlignRow(row);
-    const auto path = MatchPath(pairs, {similarity.scale, geometry::SE3()});
-    Statistics found = Find(row, MatchPath(pairs, similarity), path);
+    const auto path = BuildMatchedTrajectory(pairs, {similarity.scale, geometry::SE3()});
+    Statistics found = Find(row, BuildMatchedTrajectory(pairs, similarity), path);
     if (Length(row) == 10.0) {
       EXPECT_FALSE(Coincide(found, row));
       auto ends = FindEnds(path.distance, 10.0);
@@ -161,7 +163,7 @@ TEST(RpgReference, OnlyYawAndGravityDependOnTheFrame) {
   std::map<std::string, int> differ;
   for (const auto& row : reference.rows) {
     if (Length(row) == 10.0) continue;
-    const auto path = MatchPath(reference.pairs.at(row.at("est")), reference.AlignRow(row));
+    const auto path = BuildMatchedTrajectory(reference.pairs.at(row.at("est")), reference.AlignRow(row));
     const bool turned = row.at("label") == "yaw" || row.at("label") == "gravity";
     ++(Coincide(Find(row, path, path), row) ? coincide : differ)[turned ? row.at("align") : "all"];
   }
@@ -188,8 +190,8 @@ std::vector<PosePair> Wander(int n, unsigned seed) {
   return pairs;
 }
 
-TEST(SubTrajectories, AreThoseOfAPlainSearch) {
-  const auto path = MatchPath(Wander(500, 3), {});
+TEST(SubTrajectories, AgreeWithAnExhaustiveSearch) {
+  const auto path = BuildMatchedTrajectory(Wander(500, 3), {});
   int passed_over = 0;
   for (const double length : {0.3, 2.0, 10.0, 40.0}) {
     const auto ends = FindEnds(path.distance, length);
@@ -207,14 +209,14 @@ TEST(SubTrajectories, AreThoseOfAPlainSearch) {
   EXPECT_GT(passed_over, 0);
 }
 
-TEST(SubTrajectories, EndAtTheEarlierOfTwoEquallyNearAndNotTooFarOff) {
+TEST(SubTrajectories, EndAtTheEarlierOfTwoEquallyNearPosesWithinTheTolerance) {
   const auto count_and_error = [](const std::vector<double>& truth, const std::vector<double>& estimate) {
     std::vector<PosePair> pairs;
     for (std::size_t i = 0; i < truth.size(); ++i) {
       const auto at = [](double x) { return geometry::SE3(Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0, 0)); };
       pairs.push_back({static_cast<TimeNs>(i), static_cast<TimeNs>(i), at(estimate[i]), at(truth[i])});
     }
-    const auto errors = ComputeSubTrajectoryErrors(MatchPath(pairs), std::vector{10.0}, kUp);
+    const auto errors = ComputeSubTrajectoryErrors(BuildMatchedTrajectory(pairs), std::vector{10.0}, kUp);
     return errors.empty() ? std::pair{0, 0.0}
                           : std::pair{static_cast<int>(errors[0].translation_m.count), errors[0].translation_m.max};
   };
@@ -226,7 +228,7 @@ TEST(SubTrajectories, EndAtTheEarlierOfTwoEquallyNearAndNotTooFarOff) {
   EXPECT_EQ(count_and_error({0, 11.5}, {0, 11.5}), std::pair(1, 0.0));
 }
 
-TEST(SubTrajectories, NameTurnsAboutUpYawAndTheRestGravity) {
+TEST(SubTrajectories, SplitRotationIntoYawAndGravity) {
   const Eigen::Vector3d up = -Eigen::Vector3d::UnitY();
   std::vector<PosePair> pairs;
   for (int i = 0; i < 2; ++i) {
@@ -234,7 +236,7 @@ TEST(SubTrajectories, NameTurnsAboutUpYawAndTheRestGravity) {
     const geometry::SE3 turned(geometry::so3::Exp(i * 0.02 * up), Eigen::Vector3d(0, 0.3 * i, 10.0 * i));
     pairs.push_back({i, i, turned, truth});
   }
-  auto errors = ComputeSubTrajectoryErrors(MatchPath(pairs, {}), std::vector{10.0}, up).at(0);
+  auto errors = ComputeSubTrajectoryErrors(BuildMatchedTrajectory(pairs, {}), std::vector{10.0}, up).at(0);
   EXPECT_EQ(errors.yaw_deg.count, 1);
   EXPECT_NEAR(errors.yaw_deg.mean, 0.02 * kDegrees, 1e-9);
   EXPECT_NEAR(errors.gravity_deg.mean, 0.0, 1e-9);
@@ -242,18 +244,18 @@ TEST(SubTrajectories, NameTurnsAboutUpYawAndTheRestGravity) {
   EXPECT_NEAR(errors.translation_percent.mean, 3.0, 1e-9);
 
   pairs[1].T_world_cam_estimate = geometry::SE3(geometry::so3::Exp({0.03, 0, 0}), Eigen::Vector3d(0, 0, 10));
-  errors = ComputeSubTrajectoryErrors(MatchPath(pairs, {}), std::vector{10.0}, up).at(0);
+  errors = ComputeSubTrajectoryErrors(BuildMatchedTrajectory(pairs, {}), std::vector{10.0}, up).at(0);
   EXPECT_NEAR(errors.yaw_deg.mean, 0.0, 1e-9);
   EXPECT_NEAR(errors.gravity_deg.mean, 0.03 * kDegrees, 1e-9);
 }
 
-TEST(SubTrajectories, LeaveOutLengthsThatDoNotFit) {
-  const auto path = MatchPath(Wander(50, 1), {});
+TEST(SubTrajectories, SkipLengthsThatDoNotFit) {
+  const auto path = BuildMatchedTrajectory(Wander(50, 1), {});
   EXPECT_TRUE(ComputeSubTrajectoryErrors(path, std::vector{1e6}, kUp).empty());
   EXPECT_EQ(ComputeSubTrajectoryErrors(path, std::vector{1e6, 1.0}, kUp).size(), 1U);
   EXPECT_TRUE(ComputeSubTrajectoryErrors({}, std::vector{1.0}, kUp).empty());
   const std::vector<PosePair> still(20, Wander(1, 1).front());
-  EXPECT_TRUE(ComputeSubTrajectoryErrors(MatchPath(still, {}), std::vector{1.0}, kUp).empty());
+  EXPECT_TRUE(ComputeSubTrajectoryErrors(BuildMatchedTrajectory(still, {}), std::vector{1.0}, kUp).empty());
 }
 
 }  // namespace

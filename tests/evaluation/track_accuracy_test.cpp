@@ -20,7 +20,8 @@ struct Made {
   void Add(int count, double interval_s, const std::function<double(int)>& error, double true_lifetime_s = NAN) {
     const auto id = static_cast<std::int64_t>(tracks.size());
     tracks.push_back({id, {}});
-    truth.push_back({.verdict = TrackVerdict::kJudged, .positions = {}, .beside = {}, .visible_until = std::nullopt});
+    truth.push_back(
+        {.status = TrackStatus::kEvaluated, .positions = {}, .other_surfaces = {}, .visible_until = std::nullopt});
     for (int i = 0; i < count; ++i) {
       tracks.back().observations.push_back({id, FromSeconds(interval_s * i), 50.0 + error(i), 60.0});
       truth.back().positions.emplace_back(Eigen::Vector2d(50.0, 60.0));
@@ -45,8 +46,8 @@ TEST(TrackAccuracy, PerfectTracksHaveNoErrorAndReachTheirTrueAge) {
   for (const auto& threshold : accuracy.thresholds) {
     EXPECT_EQ(threshold.error_px.count, 32);
     EXPECT_EQ(threshold.error_px.max, 0.0);
-    EXPECT_EQ(threshold.exceeding_share, 0.0);
-    EXPECT_EQ(threshold.outlier_share, 0.0);
+    EXPECT_EQ(threshold.exceeding_ratio, 0.0);
+    EXPECT_EQ(threshold.outlier_ratio, 0.0);
     EXPECT_DOUBLE_EQ(threshold.feature_age_s.mean, 1.5);
     EXPECT_DOUBLE_EQ(threshold.expected_age_s, 1.5);
     EXPECT_DOUBLE_EQ(threshold.expected_age_normalized, 1.0);
@@ -59,11 +60,12 @@ TEST(TrackAccuracy, ConstantOffsetIsTheError) {
   made.Add(50, 0.02, [](int) { return -2.5; });
   const auto accuracy = made.Evaluate({2.0, 3.0});
   const auto& within = accuracy.thresholds[1];
-  for (const double value : {within.error_px.mean, within.error_px.median, within.error_px.rmse, within.error_p25_px,
-                             within.error_p99_px, within.track_error_mean_px, within.track_error_median_px}) {
+  for (const double value :
+       {within.error_px.mean, within.error_px.median, within.error_px.rmse, within.error_quantiles_px.p25,
+        within.error_quantiles_px.p99, within.track_error_mean_px, within.track_error_median_px}) {
     EXPECT_DOUBLE_EQ(value, 2.5);
   }
-  EXPECT_EQ(accuracy.thresholds[0].outlier_share, 1.0);
+  EXPECT_EQ(accuracy.thresholds[0].outlier_ratio, 1.0);
   EXPECT_EQ(accuracy.thresholds[0].error_px.count, 0);
   EXPECT_TRUE(std::isnan(accuracy.thresholds[0].feature_age_s.mean));
   EXPECT_EQ(accuracy.thresholds[0].expected_age_s, 0.0);
@@ -81,13 +83,13 @@ TEST(TrackAccuracy, LinearDriftEndsTheFeatureAgeWhereItCrossesTheThreshold) {
   EXPECT_EQ(at_5px.error_px.count, 167);
   EXPECT_NEAR(at_5px.error_px.mean, 0.5 * 3.0 * 1.66, 1e-9);
   EXPECT_NEAR(at_5px.error_px.max, 4.98, 1e-9);
-  EXPECT_EQ(at_5px.exceeding_share, 1.0);
-  EXPECT_EQ(at_5px.outlier_share, 0.0);
+  EXPECT_EQ(at_5px.exceeding_ratio, 1.0);
+  EXPECT_EQ(at_5px.outlier_ratio, 0.0);
   EXPECT_NEAR(accuracy.thresholds[1].error_px.max, 9.0, 1e-9);
   EXPECT_NEAR(accuracy.tracks[0].feature_ages_s[0], 1.66, 1e-9);
 }
 
-TEST(TrackAccuracy, ATrackThatComesBackIsNotWithinTheThresholdAgain) {
+TEST(TrackAccuracy, TheFeatureAgeEndsAtTheFirstExcess) {
   Made made;
   made.Add(10, 0.1, [](int i) { return i == 4 ? 6.0 : 0.5; });
   const auto accuracy = made.Evaluate({5.0});
@@ -96,7 +98,7 @@ TEST(TrackAccuracy, ATrackThatComesBackIsNotWithinTheThresholdAgain) {
   EXPECT_EQ(accuracy.thresholds[1].error_px.count, 10);
 }
 
-TEST(TrackAccuracy, ExpectedAgeIsTheAgeOfStableTracksTimesTheirShare) {
+TEST(TrackAccuracy, ExpectedAgeIsTheAgeOfStableTracksTimesTheirRatio) {
   Made made;
   made.Add(11, 0.1, Zero, 2.0);  // half of its true life
   made.Add(
@@ -106,21 +108,21 @@ TEST(TrackAccuracy, ExpectedAgeIsTheAgeOfStableTracksTimesTheirShare) {
   made.Add(
       6, 0.1, [](int i) { return i < 3 ? 0.0 : 9.0; }, 0.5);
   const auto at_5px = made.Evaluate({5.0}).thresholds[0];
-  EXPECT_DOUBLE_EQ(at_5px.outlier_share, 0.5);
-  EXPECT_DOUBLE_EQ(at_5px.exceeding_share, 0.75);
-  EXPECT_DOUBLE_EQ(at_5px.mostly_exceeding_share, 0.5) << "the last one is off in half of its positions only";
+  EXPECT_DOUBLE_EQ(at_5px.outlier_ratio, 0.5);
+  EXPECT_DOUBLE_EQ(at_5px.exceeding_ratio, 0.75);
+  EXPECT_DOUBLE_EQ(at_5px.median_exceeding_ratio, 0.5) << "the last one is off in half of its positions only";
   EXPECT_NEAR(at_5px.feature_age_s.mean, 0.6, 1e-12);
   EXPECT_NEAR(at_5px.feature_age_s.median, 0.6, 1e-12);
   EXPECT_NEAR(at_5px.expected_age_s, 0.3, 1e-12);
   EXPECT_NEAR(at_5px.expected_age_normalized, (0.5 + 0.0 + 0.0 + 0.4) / 4.0, 1e-12);
 }
 
-TEST(TrackAccuracy, AStrayTrackFollowsNoSurface) {
+TEST(TrackAccuracy, AFalseTrackFollowsNoSurface) {
   Made made;
   for (int i = 0; i < 4; ++i) made.Add(11, 0.1, [](int k) { return 1.0 * k; });  // 5.5 px off at the median
   made.Add(11, 0.1, Zero);
   const auto beside = [&](std::size_t track, double off_px, std::size_t known) {
-    auto& positions = made.truth[track].beside.emplace_back(11);
+    auto& positions = made.truth[track].other_surfaces.emplace_back(11);
     for (std::size_t i = 0; i < known; ++i) {
       const auto& seen = made.tracks[track].observations[i];
       positions[i] = Eigen::Vector2d(seen.x, seen.y + off_px);
@@ -131,8 +133,8 @@ TEST(TrackAccuracy, AStrayTrackFollowsNoSurface) {
   beside(1, 9.0, 11);
   beside(2, 0.0, 5);  // the point leaves the image early
   const auto accuracy = made.Evaluate({3.0});
-  EXPECT_DOUBLE_EQ(accuracy.thresholds[0].mostly_exceeding_share, 0.8);
-  EXPECT_DOUBLE_EQ(accuracy.thresholds[0].stray_share, 0.6);
+  EXPECT_DOUBLE_EQ(accuracy.thresholds[0].median_exceeding_ratio, 0.8);
+  EXPECT_DOUBLE_EQ(accuracy.thresholds[0].false_track_ratio, 0.6);
   EXPECT_DOUBLE_EQ(accuracy.tracks[0].surface_error_px, 1.0);
   EXPECT_DOUBLE_EQ(accuracy.tracks[1].surface_error_px, 4.0);
   EXPECT_DOUBLE_EQ(accuracy.tracks[2].surface_error_px, 5.0);
@@ -157,7 +159,7 @@ TEST(TrackAccuracy, ThePositionThatDefinesTheTruthIsNotCompared) {
   EXPECT_NEAR(accuracy.thresholds[0].feature_age_s.mean, 0.3, 1e-12);  // the age begins with it all the same
 }
 
-TEST(TrackAccuracy, TheAgeBeginsWithTheFirstKnownTruth) {
+TEST(TrackAccuracy, TheAgeStartsWithTheFirstKnownTruth) {
   Made made;
   made.Add(10, 0.1, Zero, 1.1);
   for (std::size_t i = 0; i < 3; ++i) made.truth[0].positions[i].reset();
@@ -168,18 +170,18 @@ TEST(TrackAccuracy, TheAgeBeginsWithTheFirstKnownTruth) {
   EXPECT_EQ(accuracy.tracks[0].observations, 10);
 }
 
-TEST(TrackAccuracy, CountsWhatItDoesNotJudge) {
+TEST(TrackAccuracy, CountsTracksByStatus) {
   Made made;
   made.Add(5, 0.1, Zero);
   made.Add(1, 0.1, Zero);
   for (const auto verdict :
-       {TrackVerdict::kNoDepth, TrackVerdict::kMoves, TrackVerdict::kNoTruth, TrackVerdict::kNotTriangulated}) {
+       {TrackStatus::kNoDepth, TrackStatus::kMovingObject, TrackStatus::kNoTruth, TrackStatus::kNotTriangulated}) {
     made.Add(5, 0.1, [](int) { return 1e3; });
-    made.truth.back().verdict = verdict;
+    made.truth.back().status = verdict;
   }
   const auto accuracy = made.Evaluate({5.0});
-  for (const auto verdict : {TrackVerdict::kJudged, TrackVerdict::kTooShort, TrackVerdict::kNoDepth,
-                             TrackVerdict::kMoves, TrackVerdict::kNoTruth, TrackVerdict::kNotTriangulated}) {
+  for (const auto verdict : {TrackStatus::kEvaluated, TrackStatus::kTooShort, TrackStatus::kNoDepth,
+                             TrackStatus::kMovingObject, TrackStatus::kNoTruth, TrackStatus::kNotTriangulated}) {
     EXPECT_EQ(Count(accuracy, verdict), 1);
   }
   EXPECT_EQ(accuracy.thresholds[1].error_px.max, 0.0);
@@ -215,7 +217,7 @@ ErrorKind KindOfRefusal(const Made& made, const std::vector<double>& thresholds)
   return ErrorKind::kOutput;
 }
 
-TEST(TrackAccuracy, RefusesThresholdsThatAreNone) {
+TEST(TrackAccuracy, RefusesInvalidThresholds) {
   Made made;
   made.Add(5, 0.1, Zero);
   for (const double bad : {0.0, -1.0, static_cast<double>(NAN), std::numeric_limits<double>::infinity()}) {
@@ -224,10 +226,10 @@ TEST(TrackAccuracy, RefusesThresholdsThatAreNone) {
   EXPECT_EQ(KindOfRefusal(made, {}), ErrorKind::kUsage);
 }
 
-TEST(TrackAccuracy, NothingToJudgeIsSaid) {
+TEST(TrackAccuracy, WithoutEvaluatedTracksTheErrorNamesTheReasons) {
   Made made;
   made.Add(5, 0.1, Zero);
-  made.truth[0].verdict = TrackVerdict::kNoDepth;
+  made.truth[0].status = TrackStatus::kNoDepth;
   EXPECT_EQ(KindOfRefusal(made, {5.0}), ErrorKind::kNothingToDo);
   EXPECT_EQ(KindOfRefusal({}, {5.0}), ErrorKind::kNothingToDo);
 }

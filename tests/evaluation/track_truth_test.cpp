@@ -24,12 +24,12 @@ TEST(TrackTruth, GroupsByIdInOrderOfTime) {
   EXPECT_EQ(grouped[1].observations[2].t, 5);
 }
 
-TEST(TrackTruth, TrueTracksAreInterpolatedButNotExtrapolatedNorAcrossHoles) {
+TEST(TrackTruth, TrueTracksAreInterpolatedWithinGapsOnly) {
   const events::Tracks truth{{1, 100 * kMs, 10, 20}, {1, 200 * kMs, 20, 40}, {1, 900 * kMs, 30, 40}};
   const events::Tracks tracks{{1, 50 * kMs, 0, 0},  {1, 100 * kMs, 0, 0}, {1, 130 * kMs, 0, 0},
                               {1, 500 * kMs, 0, 0}, {1, 900 * kMs, 0, 0}, {1, 901 * kMs, 0, 0}};
   const auto result = TruthFromTracks(GroupById(tracks), truth, 500 * kMs)[0];
-  EXPECT_EQ(result.verdict, TrackVerdict::kJudged);
+  EXPECT_EQ(result.status, TrackStatus::kEvaluated);
   EXPECT_FALSE(result.starts_at_observation);
   EXPECT_EQ(result.visible_until, 900 * kMs);
   const auto& p = result.positions;
@@ -38,12 +38,12 @@ TEST(TrackTruth, TrueTracksAreInterpolatedButNotExtrapolatedNorAcrossHoles) {
   EXPECT_TRUE(p[2]->isApprox(Eigen::Vector2d(13, 26)));
 }
 
-TEST(TrackTruth, TrackWithoutATrueOneHasNoTruth) {
+TEST(TrackTruth, TracksWithoutATrueTrackHaveNoTruth) {
   const auto tracks = GroupById({{1, 0, 5, 5}, {2, 0, 5, 5}, {3, 700 * kMs, 5, 5}});
   const auto result = TruthFromTracks(tracks, {{1, 0, 5, 5}, {3, 0, 5, 5}}, kNsPerSecond);
-  EXPECT_EQ(result[0].verdict, TrackVerdict::kJudged);
-  EXPECT_EQ(result[1].verdict, TrackVerdict::kNoTruth);
-  EXPECT_EQ(result[2].verdict, TrackVerdict::kNoTruth);
+  EXPECT_EQ(result[0].status, TrackStatus::kEvaluated);
+  EXPECT_EQ(result[1].status, TrackStatus::kNoTruth);
+  EXPECT_EQ(result[2].status, TrackStatus::kNoTruth);
 }
 
 std::vector<TrueTrack> Triangulate(const TrackScene& scene, const events::Tracks& tracks) {
@@ -56,14 +56,14 @@ TEST(TrackTruth, TriangulationFindsThePointOfAPerfectTrack) {
   scene.turning = {0.0, 0.1, 0.05};
   const events::Tracks track = scene.Follow(1, {250.0, 60.0}, 0.013, 0.9);
   const auto truth = Triangulate(scene, track)[0];
-  EXPECT_EQ(truth.verdict, TrackVerdict::kJudged);
+  EXPECT_EQ(truth.status, TrackStatus::kEvaluated);
   EXPECT_FALSE(truth.visible_until);
   for (std::size_t i = 0; i < track.size(); ++i) {
     EXPECT_LT((*truth.positions[i] - Eigen::Vector2d(track[i].x, track[i].y)).norm(), 1e-6);
   }
 }
 
-TEST(TrackTruth, ResidualsOfTheTriangulationAreTheNoiseLessWhatThePointTakesUp) {
+TEST(TrackTruth, TriangulationResidualsAreTheNoiseMinusThreeDegreesOfFreedom) {
   const TrackScene scene;
   constexpr double kSigma = 0.4;
   std::mt19937 random(7);
@@ -82,7 +82,7 @@ TEST(TrackTruth, ResidualsOfTheTriangulationAreTheNoiseLessWhatThePointTakesUp) 
   const double n = static_cast<double>(grouped[0].observations.size());
   const double expected = kSigma * std::sqrt((2.0 * n - 3.0) / n);  // of both coordinates
   EXPECT_NEAR(accuracy.thresholds.back().error_px.rmse / expected, 1.0, 0.02);
-  EXPECT_GE(Count(accuracy, TrackVerdict::kJudged), 390);
+  EXPECT_GE(Count(accuracy, TrackStatus::kEvaluated), 390);
 }
 
 TEST(TrackTruth, TriangulationIsBlindToDriftAlongTheMotionAndSeesItAcross) {
@@ -102,13 +102,13 @@ TEST(TrackTruth, TriangulationIsBlindToDriftAlongTheMotionAndSeesItAcross) {
   EXPECT_GT(rmse(across), 0.5);
 }
 
-TEST(TrackTruth, WithoutParallaxOrPosesNothingIsTriangulated) {
+TEST(TrackTruth, NeedsParallaxAndPosesToTriangulate) {
   TrackScene still;
   still.velocity.setZero();
-  EXPECT_EQ(Triangulate(still, still.Follow(1, {90, 75}, 0.0, 1.0))[0].verdict, TrackVerdict::kNotTriangulated);
+  EXPECT_EQ(Triangulate(still, still.Follow(1, {90, 75}, 0.0, 1.0))[0].status, TrackStatus::kNotTriangulated);
   const TrackScene scene;
-  EXPECT_EQ(Triangulate(scene, scene.Follow(1, {90, 75}, 0.0, 0.01))[0].verdict, TrackVerdict::kTooShort);
-  EXPECT_EQ(Triangulate(scene, {{1, 0, 90, 75}, {1, kMs, 90, 75}})[0].verdict, TrackVerdict::kNoTruth);
+  EXPECT_EQ(Triangulate(scene, scene.Follow(1, {90, 75}, 0.0, 0.01))[0].status, TrackStatus::kTooShort);
+  EXPECT_EQ(Triangulate(scene, {{1, 0, 90, 75}, {1, kMs, 90, 75}})[0].status, TrackStatus::kNoTruth);
 }
 
 TEST(TrackTruth, TracksOfAnotherSensorAreRefused) {

@@ -32,16 +32,17 @@ EventColumns RandomEvents(std::size_t count, TimeNs begin, TimeNs end) {
   return events;
 }
 
-TEST(EventHistory, FindsWhereTheNewestEventsBegin) {
+TEST(EventHistory, FindsTheWindowOfTheNewestEvents) {
   const EventColumns events = RandomEvents(3000, -10'000'000, 5'000'000);
   EventHistory history(kWidth, kHeight);
-  EXPECT_EQ(history.BeginOfNewest(kEver, 7, 10), 7);
+  EXPECT_EQ(history.NewestWindowBegin(kEver, 7, 10), 7);
   history.Append(events);
   for (const TimeNs end : {-9'000'000, -3'000'000, 0, 1'234'567, 5'000'000, 8'000'000}) {
     const auto before = std::ranges::lower_bound(events.t, end) - events.t.begin();
     for (const std::ptrdiff_t count : {1, 2, 150, 999, 2000}) {
       const TimeNs expected = count <= before ? events.t[static_cast<std::size_t>(before - count)] : events.t.front();
-      EXPECT_EQ(history.BeginOfNewest(kEver, end, static_cast<std::size_t>(count)), expected) << end << ' ' << count;
+      EXPECT_EQ(history.NewestWindowBegin(kEver, end, static_cast<std::size_t>(count)), expected)
+          << end << ' ' << count;
     }
   }
 }
@@ -56,7 +57,7 @@ std::vector<Row> Sorted(const LocalEvents& local) {
   return rows;
 }
 
-TEST(EventHistory, GathersExactlyTheEventsOfAMovingPatch) {
+TEST(EventHistory, GathersTheEventsOfAMovingPatch) {
   // Stamps on both sides of zero and a gap without events.
   EventColumns events = RandomEvents(3000, -10'000'000, 5'000'000);
   EventHistory history(kWidth, kHeight);
@@ -114,7 +115,7 @@ TEST(EventHistory, DoesNotDependOnHowTheStreamIsCutIntoBlocks) {
   EXPECT_EQ(a.dt, b.dt);
 }
 
-TEST(EventHistory, ForgetsWhatIsDropped) {
+TEST(EventHistory, ForgetsDroppedEvents) {
   const EventColumns events = RandomEvents(2000, 0, 20'000'000);
   EventHistory history(kWidth, kHeight);
   history.Append(events);
@@ -131,8 +132,8 @@ TEST(EventHistory, ForgetsWhatIsDropped) {
   EXPECT_EQ(count(0, 20'000'000), kept);
 }
 
-TEST(EventHistory, HoldsStampsOfAnySize) {
-  // Those of a slice are held in 32 bits; blocks lie far apart, beyond what 32 bits hold.
+TEST(EventHistory, AcceptsStampsOfAnySize) {
+  // A slice stores its stamps in 32 bits; these blocks are farther apart.
   constexpr TimeNs kWrap = TimeNs{1} << 32;
   EventHistory history(kWidth, kHeight);
   for (const TimeNs middle : {kWrap / 2, kWrap, 7 * kWrap, 1000000 * kWrap}) {
@@ -151,19 +152,19 @@ TEST(EventHistory, HoldsStampsOfAnySize) {
   }
 }
 
-TEST(EventHistory, RefusesTooLongAWindow) {
+TEST(EventHistory, RefusesAWindowThatIsTooLong) {
   EventHistory history(kWidth, kHeight);
-  const EventColumns events = RandomEvents(100, 0, 2 * EventHistory::kLongestHalfWindow);
+  const EventColumns events = RandomEvents(100, 0, 2 * EventHistory::kMaxHalfWindow);
   history.Append(events);
   LocalEvents local;
-  MovingPatch patch{EventHistory::kLongestHalfWindow, 25, 18, 0, 0, 50, EventHistory::kLongestHalfWindow};
+  MovingPatch patch{EventHistory::kMaxHalfWindow, 25, 18, 0, 0, 50, EventHistory::kMaxHalfWindow};
   history.Gather(patch, &local);
   EXPECT_EQ(local.size(), events.size());
   ++patch.half_window;
   EXPECT_THROW(history.Gather(patch, &local), std::length_error);
 }
 
-TEST(LocalEvents, ThinsEvenly) {
+TEST(LocalEvents, AreSubsampledEvenly) {
   LocalEvents local;
   for (int i = 0; i < 100; ++i) {
     local.x.push_back(static_cast<float>(i));
@@ -171,9 +172,9 @@ TEST(LocalEvents, ThinsEvenly) {
     local.dt.push_back(0);
     local.polarity.push_back(1);
   }
-  local.Thin(200);
+  local.Subsample(200);
   EXPECT_EQ(local.size(), 100u);
-  local.Thin(20);
+  local.Subsample(20);
   ASSERT_EQ(local.size(), 20u);
   for (std::size_t i = 0; i < local.size(); ++i) EXPECT_EQ(local.x[i], 5.0f * static_cast<float>(i));
 }

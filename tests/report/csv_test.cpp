@@ -40,7 +40,7 @@ TEST_F(CsvTest, ReadsQuotedCells) {
   EXPECT_EQ(table.Find("d"), std::nullopt);
 }
 
-TEST_F(CsvTest, ReadsBackWhatWasWritten) {
+TEST_F(CsvTest, ReadsBackWhatItWrote) {
   CsvTable table;
   table.columns = {"name", "text, quoted"};
   table.rows = {{"plain", "a\r\nb"}, {"", "\"\""}, {" blanks ", "\xc3\xa9,"}};
@@ -50,7 +50,7 @@ TEST_F(CsvTest, ReadsBackWhatWasWritten) {
   EXPECT_EQ(copy.rows, table.rows);
 }
 
-TEST_F(CsvTest, NamesTheLineOfAMistake) {
+TEST_F(CsvTest, ErrorsNameTheLine) {
   EXPECT_TRUE(Refusal("").starts_with(":1: ")) << "empty";
   EXPECT_TRUE(Refusal("a,a\n").starts_with(":1: ")) << "twice the same column";
   EXPECT_TRUE(Refusal("a,,b\n").starts_with(":1: ")) << "a column without a name";
@@ -63,7 +63,7 @@ TEST_F(CsvTest, NamesTheLineOfAMistake) {
   EXPECT_TRUE(Refusal(std::string("a,b\n1,\0\n", 8)).starts_with(":2: ")) << "not text";
 }
 
-TEST_F(CsvTest, AMissingFileIsAnInputError) {
+TEST_F(CsvTest, MissingFilesAreInputErrors) {
   EXPECT_THROW(ReadCsv(folder / "absent.csv"), Error);
   EXPECT_THROW(ReadCsv(folder), Error);
 }

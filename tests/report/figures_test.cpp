@@ -33,7 +33,7 @@ std::vector<std::vector<std::string>> Blocks(const std::string& data) {
   return blocks;
 }
 
-TEST_F(FiguresTest, TrajectoryIsSeenFromAboveAndBrokenAtGaps) {
+TEST_F(FiguresTest, TrajectoryIsATopViewInterruptedAtGaps) {
   const auto evaluation = SampleEvaluation();  // MVSEC axes: right is x, away is z
   const Figure figure = TrajectoryFigure("t", evaluation, evaluation.alignments[0]);
   const auto blocks = Blocks(figure.data);
@@ -49,7 +49,7 @@ TEST_F(FiguresTest, TrajectoryIsSeenFromAboveAndBrokenAtGaps) {
   EXPECT_EQ(AxesFigure("t", evaluation, evaluation.alignments[0], {}).data, figure.data);
 }
 
-TEST_F(FiguresTest, ErrorsAreSignedAndBrokenAtGaps) {
+TEST_F(FiguresTest, ErrorsAreSignedAndInterruptedAtGaps) {
   const auto evaluation = SampleEvaluation();
   for (const ErrorAxis axis : {ErrorAxis::kTime, ErrorAxis::kDistance}) {
     const auto blocks = Blocks(ErrorFigure("e", evaluation, evaluation.alignments[0], axis, {}).data);
@@ -59,7 +59,7 @@ TEST_F(FiguresTest, ErrorsAreSignedAndBrokenAtGaps) {
   }
 }
 
-TEST_F(FiguresTest, ErrorsGoOverTimeOrDistance) {
+TEST_F(FiguresTest, ErrorsAreOverTimeOrDistance) {
   const auto evaluation = SampleEvaluation();
   const auto& result = evaluation.alignments[0];
   const std::string time = ErrorFigure("e", evaluation, result, ErrorAxis::kTime, {}).script;
@@ -73,24 +73,24 @@ TEST_F(FiguresTest, ErrorsGoOverTimeOrDistance) {
   auto without_stamps = evaluation;
   without_stamps.has_stamps = false;
   const std::string frames = AxesFigure("e", without_stamps, result, {}).script;
-  EXPECT_NE(frames.find("set xlabel 'frame'"), std::string::npos) << frames;
+  EXPECT_NE(frames.find("set xlabel 'frame (number)'"), std::string::npos) << frames;
 }
 
-TEST_F(FiguresTest, GapsAreShadedAndRestartsMarked) {
+TEST_F(FiguresTest, GapsAreShadedAndReinitialisationsMarked) {
   const auto evaluation = SampleEvaluation();
   const auto& result = evaluation.alignments[0];
-  const std::vector<TimeNs> restarts{5 * kNsPerSecond};
-  const std::string time = ErrorFigure("e", evaluation, result, ErrorAxis::kTime, restarts).script;
+  const std::vector<TimeNs> reinitialisations{5 * kNsPerSecond};
+  const std::string time = ErrorFigure("e", evaluation, result, ErrorAxis::kTime, reinitialisations).script;
   EXPECT_NE(time.find("set object rectangle from 4, graph 0 to 5, graph 1"), std::string::npos) << time;
   EXPECT_NE(time.find("set arrow from 5, graph 0 to 5, graph 1"), std::string::npos) << time;
   EXPECT_NE(time.find("'no pose'"), std::string::npos) << time;
-  EXPECT_NE(time.find("'started anew'"), std::string::npos) << time;
-  const std::string distance = ErrorFigure("e", evaluation, result, ErrorAxis::kDistance, restarts).script;
+  EXPECT_NE(time.find("'reinitialised'"), std::string::npos) << time;
+  const std::string distance = ErrorFigure("e", evaluation, result, ErrorAxis::kDistance, reinitialisations).script;
   EXPECT_NE(distance.find("set object rectangle from 40, graph 0 to 50, graph 1"), std::string::npos) << distance;
   EXPECT_NE(distance.find("set arrow from 50, graph 0 to 50, graph 1"), std::string::npos) << distance;
 }
 
-TEST_F(FiguresTest, AnEstimateThatStopsEarlyShowsIt) {
+TEST_F(FiguresTest, MissingEndsOfTheEstimateAreShaded) {
   geometry::Trajectory truth;
   for (int i = 0; i <= 100; ++i)
     truth.push_back({i * (kNsPerSecond / 10), geometry::SE3({1, 0, 0, 0}, {0, 0, 1.0 * i})});
@@ -108,7 +108,7 @@ TEST_F(FiguresTest, AnEstimateThatStopsEarlyShowsIt) {
   EXPECT_EQ(distance.find("set object"), std::string::npos) << distance;
 }
 
-TEST_F(FiguresTest, ScaleDriftIsBrokenWhereItIsUndetermined) {
+TEST_F(FiguresTest, ScaleDriftIsInterruptedWhereUndetermined) {
   auto evaluation = SampleEvaluation();
   evaluation.alignments[0].segments.local_scale = {
       {0.0, 0.0, 1.25}, {0.4, 4.0, NAN}, {0.8, 8.0, NAN}, {1.0, 10.0, 0.75}, {1.5, 15.0, 1.0}};
@@ -127,7 +127,7 @@ TEST_F(FiguresTest, LiveFeaturesCountEveryFrame) {
   EXPECT_NE(figure.script.find("'mean 1.0'"), std::string::npos) << figure.script;
 }
 
-TEST_F(FiguresTest, APoseAloneBetweenGapsIsSeenAmongManyOthers) {
+TEST_F(FiguresTest, SinglePosesBetweenGapsAreVisible) {
   if (!HaveGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   geometry::Trajectory truth;
   geometry::Trajectory estimate;
@@ -155,7 +155,7 @@ TEST_F(FiguresTest, APoseAloneBetweenGapsIsSeenAmongManyOthers) {
   EXPECT_EQ(dots("a", AxesFigure("a", evaluation, result, {})), 3 * (1 + 3));
 }
 
-TEST_F(FiguresTest, LongCurvesAreThinnedInThePictureOnly) {
+TEST_F(FiguresTest, LongCurvesAreThinnedInTheFigureOnly) {
   geometry::Trajectory truth;
   for (TimeNs i = 0; i < 12'000; ++i)
     truth.push_back({i * 10'000'000, geometry::SE3({1, 0, 0, 0}, {0, 0, 0.1 * static_cast<double>(i)})});
@@ -167,15 +167,16 @@ TEST_F(FiguresTest, LongCurvesAreThinnedInThePictureOnly) {
 }
 
 /// All figures of one evaluation and of its tracks; true if gnuplot drew every one of them without a word.
-bool DrawsAll(const fs::path& folder, const evaluation::Evaluation& evaluation, std::span<const TimeNs> restarts,
-              const evaluation::LifetimeStatistics& lifetimes, std::span<const LiveFeatures> live) {
+bool DrawsAll(const fs::path& folder, const evaluation::Evaluation& evaluation,
+              std::span<const TimeNs> reinitialisations, const evaluation::LifetimeStatistics& lifetimes,
+              std::span<const LiveFeatures> live) {
   const auto& result = evaluation.alignments[0];
   const std::vector<std::pair<std::string, Figure>> figures{
       {"trajectory", TrajectoryFigure("trajectory", evaluation, result)},
-      {"axes", AxesFigure("axes", evaluation, result, restarts)},
-      {"errors", ErrorFigure("errors", evaluation, result, ErrorAxis::kTime, restarts)},
-      {"errors_distance", ErrorFigure("errors_distance", evaluation, result, ErrorAxis::kDistance, restarts)},
-      {"scale", ScaleDriftFigure("scale", evaluation, result, restarts)},
+      {"axes", AxesFigure("axes", evaluation, result, reinitialisations)},
+      {"errors", ErrorFigure("errors", evaluation, result, ErrorAxis::kTime, reinitialisations)},
+      {"errors_distance", ErrorFigure("errors_distance", evaluation, result, ErrorAxis::kDistance, reinitialisations)},
+      {"scale", ScaleDriftFigure("scale", evaluation, result, reinitialisations)},
       {"lifetime", LifetimeFigure("lifetime", lifetimes)},
       {"lifetime_seconds", LifetimeSecondsFigure("lifetime_seconds", lifetimes)},
       {"live_features", LiveFeaturesFigure("live_features", live)}};
@@ -196,10 +197,10 @@ TEST_F(FiguresTest, DrawsSvgAndPdfWithTheSameBytesEachTime) {
   evaluation::LifetimeStatistics lifetimes;
   lifetimes.histogram = {{3, 5, 4}, {5, 7, 1}};
   lifetimes.histogram_seconds = {{0.0, 0.05, 4}, {0.05, 0.1, 1}};
-  const std::vector<TimeNs> restarts{5 * kNsPerSecond, 7 * kNsPerSecond};
-  const std::vector<LiveFeatures> live{{restarts[0], 1}, {restarts[1], 0}};
+  const std::vector<TimeNs> reinitialisations{5 * kNsPerSecond, 7 * kNsPerSecond};
+  const std::vector<LiveFeatures> live{{reinitialisations[0], 1}, {reinitialisations[1], 0}};
   for (const char* run : {"a", "b"}) {
-    ASSERT_TRUE(DrawsAll(folder / run, SampleEvaluation(), restarts, lifetimes, live));
+    ASSERT_TRUE(DrawsAll(folder / run, SampleEvaluation(), reinitialisations, lifetimes, live));
   }
   EXPECT_EQ(std::distance(fs::directory_iterator(folder / "a"), {}), 8 * 4);
   for (const auto& entry : fs::directory_iterator(folder / "a")) {
@@ -224,7 +225,7 @@ evaluation::Evaluation EvaluateLine(int count, double step, double error, double
                               evaluation::EvaluationOptions());
 }
 
-TEST_F(FiguresTest, DrawsWhatIsDegenerateOrExtreme) {
+TEST_F(FiguresTest, DrawsDegenerateAndExtremeData) {
   if (!HaveGnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   const std::pair<const char*, evaluation::Evaluation> cases[] = {
       {"one pose", EvaluateLine(1, 0.0, 0.0)},         {"two poses", EvaluateLine(2, 1.0, 0.0)},

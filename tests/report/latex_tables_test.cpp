@@ -66,13 +66,13 @@ TEST_F(LatexTablesTest, ErrorsAsInThePapersTable3) {
 )");
 }
 
-TEST_F(LatexTablesTest, EachAlignmentHasItsBlock) {
+TEST_F(LatexTablesTest, EachAlignmentHasABlock) {
   const std::string table = ErrorTable("x", SampleEvaluation());
   EXPECT_NE(table.find("{Alignment none, "), std::string::npos);
   EXPECT_NE(table.find("{Alignment origin, "), std::string::npos);
 }
 
-TEST_F(LatexTablesTest, WhatIsNotDeterminedIsADash) {
+TEST_F(LatexTablesTest, UndeterminedValuesAreDashes) {
   geometry::Trajectory still;
   for (int i = 0; i < 5; ++i) still.push_back({i * kNsPerSecond / 10, geometry::SE3()});
   const std::string table = ErrorTable("still", evaluation::Evaluate(still, still, evaluation::ParseAlignments("none"),

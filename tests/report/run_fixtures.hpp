@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "evo/core/error.hpp"
+#include "evo/report/evaluation_tables.hpp"
 #include "evo/report/manifest.hpp"
 #include "evo/report/run_table.hpp"
-#include "evo/report/tables.hpp"
 #include "report/fixtures.hpp"
 
 namespace evo::report {

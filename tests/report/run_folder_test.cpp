@@ -7,7 +7,7 @@ namespace {
 
 using RunFolderTest = RunsTest;
 
-TEST_F(RunFolderTest, ReadsWhatARunLeft) {
+TEST_F(RunFolderTest, ReadsTheResultsOfARun) {
   EvaluatedRun("day");
   Write("day/plots/b.svg", "<svg/>");
   Write("day/plots/a.svg", "<svg/>");
@@ -25,7 +25,7 @@ TEST_F(RunFolderTest, ReadsWhatARunLeft) {
   EXPECT_EQ(runs[0].warnings, std::vector<std::string>{"warning: beware"});
 }
 
-TEST_F(RunFolderTest, ManifestReadsBackAsItWasWritten) {
+TEST_F(RunFolderTest, ManifestReadsBackAsWritten) {
   WriteRunManifest("day", {{"evaluation.up", "auto"}, {"tracker.features", "150"}, {"odometry.pose.refine", "true"}});
   const Manifest manifest = ReadManifest(folder / "day" / "manifest.json");
   EXPECT_EQ(manifest.command_line, (std::vector<std::string>{"evo-run", "run", "it's"}));
@@ -47,7 +47,7 @@ TEST_F(RunFolderTest, SpeedIsUnknownWithoutTracking) {
   EXPECT_FALSE(RealTimeFactor(manifest));
 }
 
-TEST_F(RunFolderTest, EachFolderOnceUnderANameOfItsOwn) {
+TEST_F(RunFolderTest, ReadsEachFolderOnceUnderAUniqueName) {
   EvaluatedRun("a/day");
   EvaluatedRun("b/day");
   EvaluatedRun("night");
@@ -64,7 +64,7 @@ TEST_F(RunFolderTest, AFailureIsOneLine) {
   EXPECT_NE(runs[1].failure, "");
 }
 
-TEST_F(RunFolderTest, ARunThatDidNotEndHasFailed) {
+TEST_F(RunFolderTest, IncompleteRunsHaveFailed) {
   EvaluatedRun("day");
   std::filesystem::remove(folder / "day" / "manifest.json");
   const auto runs = ReadRunFolders({folder / "day"});
@@ -76,10 +76,10 @@ TEST_F(RunFolderTest, OtherFoldersAreRefused) {
   EXPECT_NE(Refusal({folder / "absent"}).find("absent: no such folder"), std::string::npos);
   EXPECT_NE(Refusal({Write("file", "x")}).find("file: no such folder"), std::string::npos);
   Write("other/readme.txt", "x");
-  EXPECT_NE(Refusal({folder / "other"}).find("other: no manifest.json"), std::string::npos);
+  EXPECT_NE(Refusal({folder / "other"}).find("other: holds no manifest.json"), std::string::npos);
 }
 
-TEST_F(RunFolderTest, CorruptFilesAreRefusedWithTheirLine) {
+TEST_F(RunFolderTest, CorruptFilesAreRefusedWithFileAndLine) {
   const auto summary = [&](const std::string& text) { return Refusal({EvaluatedRun("day", {}, text)}); };
   EXPECT_NE(summary("sequence,alignment,coverage\nday,sim3\n").find("summary.csv:2: "), std::string::npos);
   EXPECT_NE(summary("sequence,coverage\nday,1\n").find("summary.csv:1: "), std::string::npos);

@@ -19,7 +19,7 @@ class RunPageTest : public RunsTest {
   }
 };
 
-TEST_F(RunPageTest, NamesCannotBreakIt) {
+TEST_F(RunPageTest, EscapesNames) {
   const auto run = EvaluatedRun("<b>\"x' & {{script}}", {{"p", "</script>"}});
   const std::string page = Page({run, EvaluatedRun("y", {{"p", "1"}}), FailedRun("<i>", "</td><img src=x>")}, "<u>");
   for (const char* raw : {"<b>", "<i>", "<u>", "<img src=x>"}) EXPECT_EQ(Count(page, raw), 0) << raw;
@@ -30,7 +30,7 @@ TEST_F(RunPageTest, NamesCannotBreakIt) {
   EXPECT_NE(page.find("&lt;/td&gt;&lt;img src=x&gt;"), std::string::npos);
 }
 
-TEST_F(RunPageTest, IsCompleteInItself) {
+TEST_F(RunPageTest, IsSelfContained) {
   const auto run = EvaluatedRun("day");
   Write("day/plots/axes.svg", "<svg id=\"a\"/>");
   Write("day/images/four_frames_1.png", "png");
@@ -56,11 +56,11 @@ TEST_F(RunPageTest, ShowsTrajectoryAndErrorsOfAllRunsBelowTheTable) {
       "<svg viewBox=\"0 0 900 600\" role=\"img\" aria-label=\"day: trajectory\"><image id=\"picture-2-trajectory\" "
       "width=\"900\" height=\"600\" href=\"data:image/svg+xml;base64,");
   const auto errors = page.find("<image id=\"picture-2-errors\" width=\"900\" height=\"620\" ");
-  EXPECT_LT(page.find("<h2>Results"), page.find("<h2>At a glance"));
-  EXPECT_LT(page.find("<h2>At a glance"), trajectory);
+  EXPECT_LT(page.find("<h2>Results"), page.find("<h2>Trajectories and errors"));
+  EXPECT_LT(page.find("<h2>Trajectories and errors"), trajectory);
   EXPECT_LT(trajectory, errors);
   EXPECT_LT(errors, page.find("<image id=\"picture-3-errors\""));
-  EXPECT_LT(page.find("<image id=\"picture-3-errors\""), page.find("<h2>Configuration"));
+  EXPECT_LT(page.find("<image id=\"picture-3-errors\""), page.find("<h2>Parameters"));
   EXPECT_EQ(Count(page, "<image "), 3);
   // The details show the same without a copy.
   EXPECT_EQ(Count(page, "data:image/svg+xml"), 4);
@@ -83,13 +83,13 @@ TEST_F(RunPageTest, ShowsNumbersParametersAndOrigin) {
   EXPECT_NE(page.find("<td class=\"number\" data-value=\"1.25\">1.2500</td>"), std::string::npos);
   EXPECT_NE(page.find("<tr><th scope=\"row\">x.y</th><td>1</td><td>2</td></tr>"), std::string::npos);
   EXPECT_NE(page.find("<pre>evo-run run &#39;it&#39;\\&#39;&#39;s&#39;</pre>"), std::string::npos);
-  EXPECT_NE(page.find("odometry started anew at 1.500000000 s"), std::string::npos);
+  EXPECT_NE(page.find("odometry reinitialised at 1.500000000 s"), std::string::npos);
   EXPECT_NE(page.find("<code>abc</code>"), std::string::npos);
   EXPECT_NE(page.find("id=\"run-2\""), std::string::npos);
   EXPECT_EQ(Count(page, "href=\"#run-2\""), 4);  // two alignments in two tables
 }
 
-TEST_F(RunPageTest, NamesPicturesThatAreTooLarge) {
+TEST_F(RunPageTest, NamesTooLargePictures) {
   const auto run = EvaluatedRun("day");
   Write("day/plots/errors.svg", std::string(2'000'001, ' '));
   const std::string page = Page({run});
@@ -97,7 +97,7 @@ TEST_F(RunPageTest, NamesPicturesThatAreTooLarge) {
   EXPECT_NE(page.find("errors.svg (2.0 MB) is too large"), std::string::npos);
 }
 
-TEST_F(RunPageTest, TheSameRunsGiveTheSameBytes) {
+TEST_F(RunPageTest, EqualRunsGiveEqualBytes) {
   const auto run = EvaluatedRun("day");
   EXPECT_EQ(Page({run}), Page({run}));
 }

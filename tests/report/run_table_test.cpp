@@ -8,7 +8,7 @@ namespace {
 
 using RunTableTest = RunsTest;
 
-TEST_F(RunTableTest, HasARowForEachRunAndAlignment) {
+TEST_F(RunTableTest, HasOneRowForEachRunAndAlignment) {
   const auto runs = ReadRunFolders({EvaluatedRun("day"), FailedRun("bad", "exit code 4: gone"), TrackedRun("tracks")});
   const auto table = MergeRuns(runs);
   EXPECT_EQ(table.columns,
@@ -32,7 +32,7 @@ TEST_F(RunTableTest, HasARowForEachRunAndAlignment) {
   EXPECT_EQ(Cell(table, 3, "lifetime_tracks"), "2");
 }
 
-TEST_F(RunTableTest, ColumnsOfAllSummariesMeet) {
+TEST_F(RunTableTest, MergesTheColumnsOfAllSummaries) {
   const auto runs = ReadRunFolders({EvaluatedRun("old", {}, "sequence,alignment,coverage\nday,sim3,1\n"),
                                     EvaluatedRun("new", {}, "sequence,alignment,added,coverage\nday,sim3,7,0.5\n")});
   const auto table = MergeRuns(runs);
@@ -42,7 +42,7 @@ TEST_F(RunTableTest, ColumnsOfAllSummariesMeet) {
   EXPECT_EQ(Cell(table, 1, "coverage"), "0.5");
 }
 
-TEST_F(RunTableTest, OnlyParametersThatDifferAreNamed) {
+TEST_F(RunTableTest, NamesOnlyParametersThatDiffer) {
   const auto runs =
       ReadRunFolders({EvaluatedRun("a", {{"x.one", "1"}, {"x.two", "2"}, {"x.three", "3"}}), FailedRun("b", "gone"),
                       EvaluatedRun("c", {{"x.one", "1"}, {"x.two", "5"}, {"x.new", "n"}})});
@@ -58,12 +58,12 @@ TEST_F(RunTableTest, OnlyParametersThatDifferAreNamed) {
   EXPECT_EQ(Cell(table, 3, "parameters"), "x.two=5 x.new=n");
 }
 
-TEST_F(RunTableTest, EqualRunsDoNotDiffer) {
+TEST_F(RunTableTest, EqualRunsHaveNoDifferences) {
   const auto runs = ReadRunFolders({EvaluatedRun("a", {{"x", "1"}}), EvaluatedRun("b", {{"x", "1"}})});
   EXPECT_TRUE(CompareParameters(runs).empty());
 }
 
-TEST_F(RunTableTest, TheFirstAlignmentThatAllHaveIsChosen) {
+TEST_F(RunTableTest, ChoosesTheFirstCommonAlignment) {
   const auto both = EvaluatedRun("both");
   const auto only = EvaluatedRun("only", {}, "sequence,alignment\nday,sim3\n");
   const auto other = EvaluatedRun("other", {}, "sequence,alignment\nday,none\n");
@@ -81,7 +81,7 @@ TEST_F(RunTableTest, TheFirstAlignmentThatAllHaveIsChosen) {
   }
 }
 
-TEST_F(RunTableTest, LatexHasARowARun) {
+TEST_F(RunTableTest, LatexHasOneRowARun) {
   const auto runs = ReadRunFolders({EvaluatedRun("day_1"), FailedRun("b&d", "a/b_c is 100% gone"), TrackedRun("tracks"),
                                     EvaluatedRun("other", {}, "sequence,alignment\nday,none\n")});
   const std::string latex = RunsLatex(MergeRuns(runs), "sim3");
@@ -100,7 +100,7 @@ TEST_F(RunTableTest, LatexHasARowARun) {
   EXPECT_TRUE(latex.ends_with("\\bottomrule\n\\end{tabular}\n"));
 }
 
-TEST(Latex, EscapesWhatIsSpecial) {
+TEST(Latex, EscapesSpecialCharacters) {
   EXPECT_EQ(LatexEscape("a_b & 5% of $x {y} #1"), "a\\_b \\& 5\\% of \\$x \\{y\\} \\#1");
   EXPECT_EQ(LatexEscape("~^\\<>|"),
             "\\textasciitilde{}\\textasciicircum{}\\textbackslash{}\\textless{}\\textgreater{}\\textbar{}");

@@ -25,7 +25,7 @@ evaluation::Evaluation Drive(const std::string& kitti_lengths, const std::string
 std::string Text(const TableRow& row, std::size_t column) { return std::get<std::string>(row.at(column).second); }
 double Number(const TableRow& row, std::size_t column) { return std::get<double>(row.at(column).second); }
 
-TEST(SegmentRows, AreOneForEachQuantityLengthAndAlignment) {
+TEST(SegmentRows, HaveOneRowForEachQuantityLengthAndAlignment) {
   const auto rows = SegmentMetricRows("day", Drive("20,40,500", "10%,50m,500"));
   ASSERT_EQ(rows.size(), 2U * (2 * 2 + 2 + 2 * 6));
   const std::vector<std::string> columns = {"sequence",   "alignment", "metric", "quantity", "unit", "delta",
@@ -60,9 +60,9 @@ TEST(SegmentRows, AreOneForEachQuantityLengthAndAlignment) {
   EXPECT_EQ(Text(rows[18], 1), "origin");
 }
 
-TEST(SegmentRows, AreLeftOutWhereNoLengthFits) { EXPECT_TRUE(SegmentMetricRows("day", Drive("500", "500m")).empty()); }
+TEST(SegmentRows, AreEmptyIfNoLengthFits) { EXPECT_TRUE(SegmentMetricRows("day", Drive("500", "500m")).empty()); }
 
-TEST(SegmentRows, KnowACameraThatStands) {
+TEST(SegmentRows, HandleAStandingCamera) {
   const geometry::Trajectory still = {{0, geometry::SE3()}, {kNsPerSecond / 10, geometry::SE3()}};
   const auto evaluation =
       evaluation::Evaluate(still, still, evaluation::ParseAlignments("none"), {}, evaluation::EvaluationOptions());

@@ -8,16 +8,18 @@
 #include <sstream>
 
 #include "evo/core/error.hpp"
+#include "evo/report/evaluation_tables.hpp"
 #include "evo/report/manifest.hpp"
-#include "evo/report/metric_rows.hpp"
+#include "evo/report/terminal_summary.hpp"
 #include "report/fixtures.hpp"
+#include "report/tables/metric_row.hpp"
 
 namespace evo::report {
 namespace {
 
 using TablesTest = ReportTest;
 
-TEST_F(TablesTest, ErrorsHaveARowAPose) {
+TEST_F(TablesTest, ErrorsHaveOneRowAPose) {
   const auto evaluation = SampleEvaluation();
   WriteErrors(folder / "errors.csv", evaluation.alignments[0].errors, true);
   std::istringstream lines(ReadFile(folder / "errors.csv"));
@@ -34,7 +36,7 @@ TEST_F(TablesTest, ErrorsHaveARowAPose) {
             "10.000000000,100.000000000,-2.000000000,0.000000000,0.000000000,2.000000000,2.000000000,0.000000000");
 }
 
-TEST_F(TablesTest, SummaryColumnsStayWhatTheyAre) {
+TEST_F(TablesTest, SummaryColumnsAreStable) {
   WriteCsv(folder / "summary.csv", SummaryRows("drive, \"day\"", SampleEvaluation()));
   const std::string csv = ReadFile(folder / "summary.csv");
   EXPECT_TRUE(csv.starts_with(
@@ -56,7 +58,7 @@ TEST_F(TablesTest, SummaryColumnsStayWhatTheyAre) {
   EXPECT_NE(csv.find("\n\"drive, \"\"day\"\"\",origin,"), std::string::npos) << csv;
 }
 
-TEST_F(TablesTest, SummaryHoldsRelativeErrorsAndRebootstraps) {
+TEST_F(TablesTest, SummaryHoldsRelativeErrorsAndReinitialisations) {
   const auto find = [](const TableRow& row, const std::string& name) {
     return std::ranges::find(row, name, [](const auto& cell) { return cell.first; })->second;
   };
@@ -70,7 +72,7 @@ TEST_F(TablesTest, SummaryHoldsRelativeErrorsAndRebootstraps) {
   EXPECT_NEAR(std::get<double>(find(row, "mean_planar_over_distance_percent")), 2.0, 1e-9);
 }
 
-TEST_F(TablesTest, MetricsHaveEveryDigit) {
+TEST_F(TablesTest, MetricsHaveAllDigits) {
   WriteCsv(folder / "metrics.csv", MetricRows("day", SampleEvaluation()), Digits::kAll);
   std::istringstream lines(ReadFile(folder / "metrics.csv"));
   std::string line;
@@ -81,7 +83,15 @@ TEST_F(TablesTest, MetricsHaveEveryDigit) {
   for (; std::getline(lines, line); ++rows) EXPECT_EQ(std::ranges::count(line, ','), 15) << line;
   EXPECT_EQ(rows, 2 * (5 + 3 * 7 + 5 * 6));
   const evaluation::Statistics third{1, 1.0 / 3.0, 1e-20, 0.0, 0.0, 0.0, 0.0, 0.0};
-  WriteCsv(folder / "one.csv", {MetricRow("a", "b", "c", "d", "m", 0.1, "s", "all", third)}, Digits::kAll);
+  const MetricKey key{.sequence = "a",
+                      .alignment = "b",
+                      .metric = "c",
+                      .quantity = "d",
+                      .unit = "m",
+                      .delta = 0.1,
+                      .delta_unit = "s",
+                      .pairs = "all"};
+  WriteCsv(folder / "one.csv", {MetricRow(key, third)}, Digits::kAll);
   EXPECT_NE(ReadFile(folder / "one.csv").find("\na,b,c,d,m,0.1,s,all,1,0.3333333333333333,1e-20,0,0,0,0,0\n"),
             std::string::npos);
 }
@@ -94,7 +104,7 @@ TEST_F(TablesTest, FilesWithoutStampsNameFrames) {
   EXPECT_TRUE(ReadFile(folder / "errors.csv").starts_with("frame,"));
 }
 
-TEST_F(TablesTest, JsonSaysTheSameAsCsv) {
+TEST_F(TablesTest, JsonEqualsCsv) {
   const auto rows = SummaryRows("day", SampleEvaluation());
   WriteJson(folder / "summary.json", rows);
   const auto json = nlohmann::json::parse(ReadFile(folder / "summary.json"));
@@ -150,7 +160,7 @@ TEST_F(TablesTest, LifetimesAreOneTable) {
             "histogram_s,tracks,0.100000000,0.200000000,1\n");
 }
 
-TEST_F(TablesTest, TerminalTableLinesUp) {
+TEST_F(TablesTest, TerminalSummaryIsAligned) {
   std::istringstream lines(FormatSummary(SampleEvaluation()));
   std::vector<std::string> table;
   for (std::string line; std::getline(lines, line);) table.push_back(line);
@@ -159,16 +169,16 @@ TEST_F(TablesTest, TerminalTableLinesUp) {
   for (std::size_t i = 2; i < table.size(); ++i) EXPECT_EQ(table[i].size(), table[1].size());
   EXPECT_TRUE(table[4].starts_with("origin "));
   evaluation::Evaluation with_covariances = SampleEvaluation();
-  with_covariances.consistency.emplace();
-  with_covariances.consistency->rotation.mean = 1.5;
-  EXPECT_NE(FormatSummary(with_covariances).find("rotations 1.50"), std::string::npos);
+  with_covariances.nees.emplace();
+  with_covariances.nees->rotation.mean = 1.5;
+  EXPECT_NE(FormatSummary(with_covariances).find("rotation 1.50"), std::string::npos);
   const auto row = SummaryRows("day", with_covariances).front();
   const auto cell = std::ranges::find(row, "nees_rotation", [](const auto& c) { return std::string(c.first); });
   ASSERT_NE(cell, row.end());
   EXPECT_EQ(std::get<double>(cell->second), 1.5);
 }
 
-TEST_F(TablesTest, ManifestHoldsWhatWasRun) {
+TEST_F(TablesTest, ManifestHoldsTheRun) {
   Manifest manifest;
   manifest.version = "1.2.3";
   manifest.command_line = {"evo-run", "evaluate"};

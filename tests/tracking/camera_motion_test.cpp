@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "evo/geometry/known_cameras.hpp"
+#include "evo/geometry/se3.hpp"
 
 namespace evo::tracking {
 namespace {
@@ -47,6 +48,40 @@ TEST(CameraMotion, RetractsAlongTheTangentsOfItsDirection) {
     EXPECT_NEAR(retracted.direction.norm(), 1.0, 1e-12);
     EXPECT_NEAR(retracted.direction.dot(motion.direction), 1.0 / std::hypot(1.0, 0.5), 1e-12);
     EXPECT_LT((retracted.angular_velocity - motion.angular_velocity - Vector3d(0.01, 0.02, 0.03)).norm(), 1e-12);
+  }
+}
+
+TEST(CameraMotion, DirectionJacobianAgreesWithTheNumericOne) {
+  constexpr double kStep = 1e-6;
+  for (const CameraMotion& motion : Motions()) {
+    for (const PixelJacobians& pixel : Pixels()) {
+      const Eigen::Matrix<double, 2, 3> J_flow_direction =
+          pixel.J_pixel_normalized * CameraMotion::DirectionJacobian(pixel);
+      for (int axis = 0; axis < 3; ++axis) {
+        CameraMotion after = motion, before = motion;
+        after.direction[axis] += kStep;
+        before.direction[axis] -= kStep;
+        const Vector2d numeric = (after.TranslationalFlow(pixel) - before.TranslationalFlow(pixel)) / (2.0 * kStep);
+        EXPECT_LT((J_flow_direction.col(axis) - numeric).norm(), 1e-4) << axis;
+      }
+    }
+  }
+}
+
+TEST(CameraMotion, PredictedFlowIsThatOfAMovingPoint) {
+  constexpr double kStep = 1e-4;  // s
+  const geometry::Camera camera(geometry::MvsecDavis346());
+  const JacobianTable jacobians(camera);
+  for (const CameraMotion& motion : Motions()) {
+    for (const Vector2d& pixel : {Vector2d(32, 20), Vector2d(200, 92), Vector2d(320, 248)}) {
+      const Vector3d point = 4.0 * camera.Undistort(pixel)->homogeneous();
+      const auto seen = [&](double t) {
+        return camera.Project(geometry::so3::Exp(t * motion.angular_velocity) * Vector3d(point - t * motion.direction));
+      };
+      const Vector2d numeric = (seen(kStep) - seen(-kStep)) / (2.0 * kStep);
+      const Vector2d flow = motion.PredictFlow(jacobians.Lookup(pixel), 0.25);
+      EXPECT_LT((flow - numeric).norm(), 1e-3 * numeric.norm()) << pixel.transpose();
+    }
   }
 }
 

@@ -5,13 +5,10 @@
 #include <algorithm>
 #include <vector>
 
-#include "tracking/synthetic_events.hpp"
-
 namespace evo::tracking {
 namespace {
 
 const auto kAny = [](const Eigen::Vector2d&) { return true; };
-const auto kNoGuess = [](const Eigen::Vector2d&) { return std::nullopt; };
 
 using Eigen::Vector2d;
 
@@ -45,7 +42,7 @@ TEST(DetectCorners, FindsTheCornersOfSquaresAndNothingElse) {
   }
 }
 
-TEST(DetectCorners, KeepsItsDistanceFromFeaturesAndFromEachOther) {
+TEST(DetectCorners, KeepsTheSpacingToFeaturesAndToEachOther) {
   TrackerOptions options;
   options.corner_spacing_px = 15.0;
   options.corner_min_spacing_px = 9.0;
@@ -59,7 +56,7 @@ TEST(DetectCorners, KeepsItsDistanceFromFeaturesAndFromEachOther) {
     return distance;
   };
   EXPECT_GE(nearest(Detect(Squares(), taken, 8, options)), 15.0);
-  // Where the usual distance leaves room for too few, less of it must do.
+  // The minimum spacing applies where the spacing leaves too few.
   const auto many = Detect(Squares(), taken, 100, options);
   EXPECT_GE(nearest(many), 9.0);
   EXPECT_LT(nearest(many), 15.0);
@@ -78,7 +75,7 @@ TEST(DetectCorners, SpreadsAFewOverTheWholeImage) {
 
 TEST(DetectCorners, FindsNothingInAnEmptyImage) { EXPECT_TRUE(Detect(cv::Mat::zeros(50, 50, CV_32F), {}, 10).empty()); }
 
-TEST(DetectCorners, LeavesOutWhatIsNotWanted) {
+TEST(DetectCorners, LeavesOutUnwantedCorners) {
   cv::Mat image = cv::Mat::zeros(100, 100, CV_32F);
   for (const int x : {20, 60}) image(cv::Rect(x, 40, 20, 20)) = 5.0;
   const TrackerOptions options;
@@ -100,20 +97,20 @@ TEST(DetectCorners, LeavesOutPatchesWithTooFewEvents) {
   for (const auto& corner : corners) EXPECT_GE(corner.x(), 70.0);
 }
 
-TEST(DetectCorners, TakesFaintOnesOnlyWhereStrongOnesAreTooFew) {
+TEST(DetectCorners, TakesWeakCornersOnlyWhereStrongOnesAreTooFew) {
   cv::Mat image = Squares();
   image(cv::Rect(80, 0, 80, 120)) *= 0.4f;  // on the right
-  const auto is_faint = [](const Vector2d& corner) { return corner.x() > 78.0; };
+  const auto is_weak = [](const Vector2d& corner) { return corner.x() > 78.0; };
   TrackerOptions options;
   options.corner_quality_ratio = 0.5;
   options.corner_min_quality_ratio = 0.5;
   const auto strong = Detect(image, {}, 100, options);
   EXPECT_GE(strong.size(), 15u);
-  EXPECT_EQ(std::ranges::count_if(strong, is_faint), 0);
+  EXPECT_EQ(std::ranges::count_if(strong, is_weak), 0);
   options.corner_min_quality_ratio = 0.001;
   EXPECT_EQ(Detect(image, {}, static_cast<int>(strong.size()), options), strong);
   const auto all = Detect(image, {}, 100, options);
-  EXPECT_GE(std::ranges::count_if(all, is_faint), 15);
+  EXPECT_GE(std::ranges::count_if(all, is_weak), 15);
   EXPECT_EQ(std::vector<Vector2d>(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(strong.size())), strong);
 }
 
@@ -122,32 +119,6 @@ TEST(DetectCorners, FindsTheSameWithAnyNumberOfThreads) {
 }
 
 TEST(DetectCorners, FindsNothingInATinyImage) { EXPECT_TRUE(Detect(cv::Mat::ones(9, 9, CV_32F), {}, 10).empty()); }
-
-TEST(CorrectedEventImage, IsSharperThanTheRawOne) {
-  const evo::tracking::testing::CrossScene scene(40, 2);
-  const TrackerOptions options;
-  events::EventHistory history(scene.width, scene.height);
-  history.Append(scene.Events([](double t) { return Vector2d(Vector2d(150.0, 150.0) * (t - 0.1)); }, 0.2, 1000.0));
-  ThreadPool pool(1);
-  FlowField flow(scene.width, scene.height, options);
-  const TimeNs t = 100'000'000;
-  flow.Update(history, t, {}, kNoGuess, &pool);
-  const cv::Mat corrected = CorrectedEventImage(history, t, flow, 8.5, options, &pool);
-  cv::Mat raw = cv::Mat::zeros(scene.height, scene.width, CV_32F);
-  history.ForEachBetween(t - 20'000'000, t + 20'000'000,
-                         [&](int x, int y, TimeNs, std::int8_t) { raw.at<float>(y, x) += 1.0f; });
-  const auto contrast = [](const cv::Mat& image) {  // sum of squares over square of sum
-    double squares = 0, sum = 0;
-    for (int y = 0; y < image.rows; ++y) {
-      for (int x = 0; x < image.cols; ++x) {
-        squares += image.at<float>(y, x) * image.at<float>(y, x);
-        sum += image.at<float>(y, x);
-      }
-    }
-    return squares / (sum * sum);
-  };
-  EXPECT_GT(contrast(corrected), 1.5 * contrast(raw));
-}
 
 }  // namespace
 }  // namespace evo::tracking

@@ -7,11 +7,11 @@ namespace {
 
 using Eigen::Vector2d;
 
-const DepthSample kBiweight{{100.0, 200.0}, 2.0};
-const Vector2d kSlope(0.004, 0.03);
+const DepthSample kCentre{{100.0, 200.0}, 2.0};
+const Vector2d kGradient(0.004, 0.03);
 
 double DepthOnPlane(const Vector2d& position) {
-  return kBiweight.inverse_depth + kSlope.dot(position - kBiweight.position);
+  return kCentre.inverse_depth + kGradient.dot(position - kCentre.position);
 }
 
 /// On a grid around the centre and with it.
@@ -19,7 +19,7 @@ std::vector<DepthSample> PlaneSamples() {
   std::vector<DepthSample> samples;
   for (int x = -2; x <= 2; ++x) {
     for (int y = -2; y <= 2; ++y) {
-      const Vector2d position = kBiweight.position + 22.0 * Vector2d(x, y);
+      const Vector2d position = kCentre.position + 22.0 * Vector2d(x, y);
       samples.push_back({position, DepthOnPlane(position)});
     }
   }
@@ -27,26 +27,26 @@ std::vector<DepthSample> PlaneSamples() {
 }
 
 TEST(FitInverseDepthGradient, IsThatOfThePlaneThroughTheSamples) {
-  const auto slope = FitInverseDepthGradient(PlaneSamples(), kBiweight);
-  ASSERT_TRUE(slope);
-  EXPECT_LT((*slope - kSlope).norm(), 0.05 * kSlope.norm());
+  const auto gradient = FitInverseDepthGradient(PlaneSamples(), kCentre);
+  ASSERT_TRUE(gradient);
+  EXPECT_LT((*gradient - kGradient).norm(), 0.05 * kGradient.norm());
 }
 
 TEST(FitInverseDepthGradient, IgnoresOtherSurfacesAndUnknownDepths) {
   auto samples = PlaneSamples();
   for (std::size_t i = 0; i < samples.size(); i += 4) samples[i].inverse_depth = i % 8 ? 0.0 : 7.0;
-  const auto slope = FitInverseDepthGradient(samples, kBiweight);
-  ASSERT_TRUE(slope);
-  EXPECT_LT((*slope - kSlope).norm(), 0.1 * kSlope.norm());
+  const auto gradient = FitInverseDepthGradient(samples, kCentre);
+  ASSERT_TRUE(gradient);
+  EXPECT_LT((*gradient - kGradient).norm(), 0.1 * kGradient.norm());
 }
 
 TEST(FitInverseDepthGradient, IsUnknownWhereTooFewAgree) {
-  EXPECT_FALSE(FitInverseDepthGradient({}, kBiweight));
-  EXPECT_FALSE(FitInverseDepthGradient({kBiweight}, kBiweight));
-  EXPECT_FALSE(FitInverseDepthGradient(PlaneSamples(), {kBiweight.position, 0.0}));
+  EXPECT_FALSE(FitInverseDepthGradient({}, kCentre));
+  EXPECT_FALSE(FitInverseDepthGradient({kCentre}, kCentre));
+  EXPECT_FALSE(FitInverseDepthGradient(PlaneSamples(), {kCentre.position, 0.0}));
   auto samples = PlaneSamples();
   for (auto& sample : samples) sample.position += Vector2d(300.0, 0.0);
-  EXPECT_FALSE(FitInverseDepthGradient(samples, kBiweight));
+  EXPECT_FALSE(FitInverseDepthGradient(samples, kCentre));
 }
 
 TEST(MedianInverseDepth, IsTheMedianOfTheNearest) {

@@ -18,13 +18,13 @@ using Eigen::Vector3d;
 constexpr double kStep = 1e-4;   // s, of numeric derivatives
 constexpr double kFrame = 0.02;  // s
 
-/// A camera that moves with `velocity` (m/s) while the world turns about it with `angular_velocity` (rad/s).
+/// A camera with a `velocity` (m/s) while the world rotates about it with `angular_velocity` (rad/s).
 struct Mover {
   geometry::Camera camera{geometry::MvsecDavis346()};
   Vector3d velocity{0.4, -0.3, 8.0};
   Vector3d angular_velocity{0.05, -0.2, 0.1};
 
-  /// Where a point, given in camera coordinates at time 0, is seen at `t`.
+  /// Pixel at `t` of a point in camera coordinates at time 0.
   Vector2d Seen(const Vector3d& point, double t) const {
     return camera.Project(geometry::so3::Exp(t * angular_velocity) * Vector3d(point - t * velocity));
   }
@@ -74,7 +74,7 @@ TEST(EgoMotion, WithstandsNoiseAndMovingObjects) {
   }
 }
 
-TEST(EgoMotion, IsUnknownWithoutEnoughFlowsOrWhereTheyContradict) {
+TEST(EgoMotion, IsUnknownWithTooFewOrContradictoryFlows) {
   const Mover mover;
   EgoMotion motion(mover.camera);
   motion.Update(Flows(mover, 5, 0.0, 1), kFrame);
@@ -96,7 +96,7 @@ TEST(EgoMotion, FollowsAChangeOfDirection) {
   EXPECT_LT(AngleDeg(motion.direction(), mover.velocity), 2.0);
 }
 
-TEST(EgoMotion, KnowsHowMuchItsTurningUsuallyChanges) {
+TEST(EgoMotion, LearnsTheTypicalAngularAcceleration) {
   const auto change_after = [](double swing) {
     Mover mover;
     EgoMotion motion(mover.camera);
@@ -112,7 +112,7 @@ TEST(EgoMotion, KnowsHowMuchItsTurningUsuallyChanges) {
   EXPECT_NEAR(change_after(0.2), mean_change, 0.4 * mean_change);
 }
 
-TEST(EgoMotion, HasNoDirectionWhereTheCameraStandsOrTurns) {
+TEST(EgoMotion, IsUnknownWhereTheCameraStandsOrOnlyRotates) {
   Mover mover;
   mover.velocity.setZero();
   EgoMotion motion(mover.camera);
@@ -123,8 +123,8 @@ TEST(EgoMotion, HasNoDirectionWhereTheCameraStandsOrTurns) {
   EXPECT_FALSE(motion.known());
 }
 
-TEST(EgoMotion, SaysNothingWhereTheLensHasNoInverse) {
-  // Barrel distortion so strong that the corners of the image lie outside the model.
+TEST(EgoMotion, IgnoresPixelsWhereTheLensHasNoInverse) {
+  // The barrel distortion is so strong that the corners of the image lie outside the model.
   geometry::Calibration calibration = geometry::MvsecDavis346();
   calibration.distortion = geometry::Distortion::kRadTan;
   calibration.coefficients = {-0.45, 0.0, 0.0, 0.0, 0.0};
@@ -145,26 +145,26 @@ TEST(EgoMotion, SaysNothingWhereTheLensHasNoInverse) {
   }
 }
 
-TEST(EgoMotion, AllowsOnlyWhatARestingPointMayDo) {
+TEST(EgoMotion, MayBeStaticTellsMovingObjects) {
   Mover mover;
   mover.angular_velocity.setZero();
   EgoMotion motion(mover.camera);
-  const FlowSample resting = mover.Sample({1.0, 0.8, 6.0});
-  const FlowSample backwards{resting.position, -resting.flow};
-  const FlowSample across{resting.position, {-resting.flow.y(), resting.flow.x()}};
+  const FlowSample is_static = mover.Sample({1.0, 0.8, 6.0});
+  const FlowSample backwards{is_static.position, -is_static.flow};
+  const FlowSample across{is_static.position, {-is_static.flow.y(), is_static.flow.x()}};
   EXPECT_TRUE(motion.MayBeStatic(backwards));  // nothing is known yet
   motion.Update(Flows(mover, 80, 0.0, 3), kFrame);
-  EXPECT_TRUE(motion.MayBeStatic(resting));
+  EXPECT_TRUE(motion.MayBeStatic(is_static));
   EXPECT_FALSE(motion.MayBeStatic(backwards));
   EXPECT_FALSE(motion.MayBeStatic(across));
 }
 
-TEST(EgoMotion, PredictsHowAPatchOfThePlaneOfTheRoadChanges) {
+TEST(EgoMotion, PredictsThePatchFlowOfARoad) {
   const Mover mover;
   EgoMotion motion(mover.camera);
   motion.Update(Flows(mover, 80, 0.0, 3), kFrame);
   ASSERT_TRUE(motion.known());
-  // The road, y = 1.5 m: inverse depth y / 1.5 on the plane z = 1.
+  // The inverse depth of the road, y = 1.5 m, is y / 1.5 on the plane z = 1.
   constexpr double kHeight = 1.5;
   const auto on_road = [&](const Vector2d& pixel) {
     const auto x = mover.camera.Undistort(pixel);
@@ -173,40 +173,41 @@ TEST(EgoMotion, PredictsHowAPatchOfThePlaneOfTheRoadChanges) {
   const Vector2d centre(120, 190);
   const FlowSample sample = mover.Sample(on_road(centre));
   const double speed = mover.velocity.norm();
-  const Vector2d slope(0.0, speed / kHeight / mover.camera.calibration().fy);
-  const PatchFlow patch = motion.PredictPatchFlow(sample, slope);
+  const Vector2d gradient(0.0, speed / kHeight / mover.camera.calibration().fy);
+  const PatchFlow patch = motion.PredictPatchFlow(sample, gradient);
   for (const Vector2d& y : {Vector2d(6, 0), Vector2d(0, 6), Vector2d(-5, -5), Vector2d(4, -6)}) {
     const Vector2d expected = mover.Sample(on_road(centre + y)).flow - sample.flow;
     const Vector2d predicted = patch.linear_rate * y + patch.quadratic_rate.dot(y) * y;
     EXPECT_LT((predicted - expected).norm(), 0.15 * expected.norm() + 0.3) << y.transpose();
   }
-  // A patch thought to face the camera grows otherwise than predicted; that tells the slope.
-  const Matrix2d unexpected = patch.linear_rate - motion.PredictPatchFlow(sample, Vector2d::Zero()).linear_rate;
-  EXPECT_LT((motion.EstimateInverseDepthGradient(sample.position, unexpected) - slope).norm(), 0.1 * slope.norm());
+  // The residual rate of a patch assumed to face the camera determines the gradient.
+  const Matrix2d residual_rate = patch.linear_rate - motion.PredictPatchFlow(sample, Vector2d::Zero()).linear_rate;
+  EXPECT_LT((motion.EstimateInverseDepthGradient(sample.position, residual_rate) - gradient).norm(),
+            0.1 * gradient.norm());
 }
 
-TEST(EgoMotion, PredictsHowTheFlowOfAPointChanges) {
+TEST(EgoMotion, PredictsTheAccelerationOfAPoint) {
   Mover mover;
   mover.angular_velocity.setZero();
   EgoMotion motion(mover.camera);
   motion.Update(Flows(mover, 80, 0.0, 3), kFrame);
   ASSERT_TRUE(motion.known());
-  // In the middle and near the edge, where the lens makes the flow grow less.
+  // Near the edge the lens lets the flow grow less.
   for (const Vector2d& pixel : {Vector2d(120, 190), Vector2d(30, 235), Vector2d(325, 130), Vector2d(300, 20)}) {
     const Vector3d point = 6.0 * mover.camera.Undistort(pixel)->homogeneous();
     const FlowSample sample = mover.Sample(point);
     constexpr double kLater = 0.02;
     const Vector2d expected =
         (mover.Seen(point, kLater) - 2.0 * mover.Seen(point, 0.0) + mover.Seen(point, -kLater)) / (kLater * kLater);
-    // Whatever the slope of the plane, it is the centre that moves.
-    for (const Vector2d& slope : {Vector2d(0.0, 0.0), Vector2d(0.01, 0.02)}) {
-      const Vector2d acceleration = motion.PredictPatchFlow(sample, slope).acceleration;
+    // The acceleration of the centre does not depend on the gradient.
+    for (const Vector2d& gradient : {Vector2d(0.0, 0.0), Vector2d(0.01, 0.02)}) {
+      const Vector2d acceleration = motion.PredictPatchFlow(sample, gradient).acceleration;
       EXPECT_LT((acceleration - expected).norm(), 0.08 * expected.norm()) << pixel.transpose();
     }
   }
 }
 
-TEST(EgoMotion, IsFilteredWhereItGoesOn) {
+TEST(EgoMotion, IsFilteredFromFrameToFrame) {
   const Mover mover;
   EgoMotion filtered(mover.camera);
   double error = 0.0, error_alone = 0.0;
@@ -223,7 +224,39 @@ TEST(EgoMotion, IsFilteredWhereItGoesOn) {
   EXPECT_LT(error, 0.7 * error_alone);
 }
 
-TEST(EgoMotion, CorrectsTheFlowOfARestingPointAcrossItsLine) {
+TEST(EgoMotion, PatchFlowAgreesWithNumericDerivatives) {
+  // Without distortion the flow of a plane is a polynomial of second degree, so its differences are exact.
+  geometry::Calibration calibration = geometry::MvsecDavis346();
+  calibration.distortion = geometry::Distortion::kRadTan;
+  calibration.coefficients = {};
+  calibration.fy = calibration.fx;
+  Mover mover;
+  mover.camera = geometry::Camera(calibration);
+  EgoMotion motion(mover.camera);
+  motion.Update(Flows(mover, 80, 0.0, 3), kFrame);
+  ASSERT_TRUE(motion.known());
+  const Vector2d gradient(0.004, 0.01);
+  for (const Vector2d& centre : {Vector2d(120, 190), Vector2d(60, 60), Vector2d(280, 100)}) {
+    const FlowSample sample = mover.Sample(6.0 * mover.camera.Undistort(centre)->homogeneous());
+    const PatchFlow patch = motion.PredictPatchFlow(sample, gradient);
+    const double inverse_depth = motion.EstimateInverseDepth(sample);
+    // Of planes through the same point, with the gradient and without.
+    const auto tilted = [&](const Vector2d& y) {
+      return motion.PredictFlow(centre + y, inverse_depth + gradient.dot(y));
+    };
+    const auto parallel = [&](const Vector2d& y) { return motion.PredictFlow(centre + y, inverse_depth); };
+    constexpr double kDifference = 1.0;  // px
+    for (int axis = 0; axis < 2; ++axis) {
+      const Vector2d y = kDifference * Vector2d::Unit(axis);
+      const Vector2d first = (tilted(y) - tilted(-y)) / (2.0 * kDifference);
+      EXPECT_LT((patch.linear_rate.col(axis) - first).norm(), 1e-4) << centre.transpose();
+      const Vector2d second = 0.5 * (tilted(y) + tilted(-y) - parallel(y) - parallel(-y));
+      EXPECT_LT((patch.quadratic_rate.dot(y) * y - second).norm(), 1e-5) << centre.transpose();
+    }
+  }
+}
+
+TEST(EgoMotion, ProjectsTheFlowOfAStaticPointToItsLine) {
   Mover mover;
   mover.angular_velocity.setZero();
   EgoMotion motion(mover.camera);
@@ -234,14 +267,14 @@ TEST(EgoMotion, CorrectsTheFlowOfARestingPointAcrossItsLine) {
   motion.Update(Flows(mover, 80, 0.0, 3), kFrame);
   ASSERT_TRUE(motion.known());
   EXPECT_LT((motion.ProjectToEpipolarLine(off) - truth.flow).norm(), 1.5);
-  // How fast the point moves along its line, only its flow can tell; and one that moves by itself is left alone.
+  // The flow along the line is kept, and so is that of a moving object.
   const FlowSample faster{truth.position, truth.flow + 3.0 * along};
   EXPECT_LT((motion.ProjectToEpipolarLine(faster) - faster.flow).norm(), 0.5);
   const FlowSample moving{truth.position, truth.flow + 300.0 * across};
   EXPECT_LT((motion.ProjectToEpipolarLine(moving) - moving.flow).norm(), 10.0);
 }
 
-TEST(EgoMotion, TellsHowNearAPointIsAndWillBe) {
+TEST(EgoMotion, EstimatesAndPropagatesInverseDepths) {
   const Mover mover;
   EgoMotion motion(mover.camera);
   const Vector3d point(2.5, 1.5, 6.0);

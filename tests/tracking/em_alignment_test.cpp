@@ -47,7 +47,7 @@ TEST(AlignToTemplate, RecoversAKnownAffineMotion) {
   EXPECT_LT((motion.linear - truth.linear).norm(), 0.04);
 }
 
-TEST(TemplatePoints, UndoTheMotionThatTheyAreGiven) {
+TEST(TemplatePoints, InvertTheMotion) {
   PatchMotion motion;
   motion.offset = {1.2, -0.7};
   motion.flow = {90, -40};
@@ -78,6 +78,37 @@ TEST(TemplatePoints, UndoTheMotionThatTheyAreGiven) {
     // To the first order in dt, as a window of some 10 ms needs.
     EXPECT_NEAR(points.u[i], truth[i].x(), 0.02) << truth[i].transpose();
     EXPECT_NEAR(points.v[i], truth[i].y(), 0.02) << truth[i].transpose();
+  }
+}
+
+TEST(ApplyCorrection, MovesTemplatePointsByTheCorrection) {
+  // The rows (1, dt / half window, u / radius, v / radius) of the M step are the Jacobian of the template points.
+  constexpr double kHalfWindow = 0.02;
+  constexpr double kRadius = 8.0;
+  constexpr double kDifference = 0.01;
+  PatchMotion motion;
+  motion.offset = {1.2, -0.7};
+  motion.flow = {90, -40};
+  motion.linear << 1.2, 0.1, -0.05, 1.1;
+  events::LocalEvents events = PatchEvents(motion, kHalfWindow, 20, 1);
+  TemplatePoints points, after, before;
+  points.Update(events, motion);
+  for (int row = 0; row < 4; ++row) {
+    for (int axis = 0; axis < 2; ++axis) {
+      TemplateCorrection correction = TemplateCorrection::Zero();
+      correction(row, axis) = kDifference;
+      PatchMotion plus = motion, minus = motion;
+      ApplyCorrection(correction, kHalfWindow, kRadius, &plus);
+      ApplyCorrection(-correction, kHalfWindow, kRadius, &minus);
+      after.Update(events, plus);
+      before.Update(events, minus);
+      for (std::size_t i = 0; i < events.size(); ++i) {
+        const Eigen::Vector4d jacobian(1.0, events.dt[i] / kHalfWindow, points.u[i] / kRadius, points.v[i] / kRadius);
+        const Vector2d numeric = Vector2d(after.u[i] - before.u[i], after.v[i] - before.v[i]) / (2.0 * kDifference);
+        EXPECT_NEAR(numeric[axis], jacobian[row], 1e-3) << row << ", " << axis;
+        EXPECT_NEAR(numeric[1 - axis], 0.0, 1e-3) << row << ", " << axis;
+      }
+    }
   }
 }
 
@@ -122,7 +153,7 @@ TEST(AlignToTemplate, OneStepIsTheLeastSquaresOfTheShifts) {
   EXPECT_LT((motion.flow - Vector2d(35, -25) + linear * step.row(1).transpose() / 0.02).norm(), 1e-2);
 }
 
-TEST(AlignToTemplate, WhatLiesOutsideChangesNothing) {
+TEST(AlignToTemplate, EventsOutsideChangeNothing) {
   const EventHistogram histogram = TemplateOf(PatchEvents({}, 0.01, 2000, 1));
   AssociationTable table;
   table.Build(histogram, 1.0, 0.2);
@@ -155,7 +186,7 @@ TEST(AlignToTemplate, LeavesAnAlignedWindowWhereItIs) {
   EXPECT_LT(bias(0, 1) + bias(1, 2), -0.4);  // inwards
   AlignToTemplate(events, table, 2, {50, 15.0, 0.01, 0.0, 0.0, bias}, true, &motion);
   EXPECT_LT(motion.offset.norm(), 0.03);
-  // What the events' places between cells change is weighted more at the centre, where the edges here are few.
+  // Votes between cells add noise, and the weights favour the centre, where this template has few edges.
   EXPECT_NEAR(std::sqrt(motion.linear.determinant()), 1.0, 0.008);
 }
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tracking/detection/flow_field.hpp"
+#include "tracking/detection/flow_estimation.hpp"
 #include "tracking/patch_events.hpp"
 #include "tracking/synthetic_events.hpp"
 
@@ -13,15 +13,15 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using testing::PatchEvents;
 
-TEST(FlowEstimator, RefinesAFlowThatMovesThePatchAFewPixels) {
+TEST(FlowEstimator, RefinesAnApproximateFlow) {
   for (const Vector2d& truth : {Vector2d(150, 40), Vector2d(-80, -160), Vector2d(0, 30)}) {
     const double half_window = 2.0 / truth.norm();
     const events::LocalEvents events =
         PatchEvents({Vector2d::Zero(), truth, Matrix2d::Identity()}, half_window, 400, 5);
     FlowEstimator estimator(17, 2, {1.0, 1.5, 0.2, 50});
     Vector2d flow = 0.6 * truth;
-    const double share = estimator.Refine(events, half_window, &flow);
-    EXPECT_GT(share, 0.7);
+    const double inlier_ratio = estimator.Refine(events, half_window, &flow);
+    EXPECT_GT(inlier_ratio, 0.7);
     EXPECT_LT((flow - truth).norm(), 0.08 * truth.norm()) << truth.transpose();
   }
 }
@@ -39,7 +39,7 @@ TEST(FlowEstimator, CoarseCellsComeNear) {
   }
 }
 
-TEST(EstimateFlow, FindsSlowAndFastFlowsFromNothing) {
+TEST(EstimateFlow, FindsSlowAndFastFlowsFromZero) {
   const testing::CrossScene scene(60, 11);
   const TrackerOptions options;
   for (const Vector2d& truth : {Vector2d(30, -10), Vector2d(120, 60), Vector2d(-350, 100)}) {
@@ -50,9 +50,9 @@ TEST(EstimateFlow, FindsSlowAndFastFlowsFromNothing) {
     for (int x = 25; x < scene.width - 20; x += 8) {
       for (int y = 25; y < scene.height - 20; y += 8) {
         Vector2d flow = Vector2d::Zero();
-        if (!EstimateFlow(history, 100'000'000, x, y, options, &flow)) continue;
+        if (!EstimateFlow(history, 100'000'000, Vector2d(x, y), options, &flow)) continue;
         ++estimated;
-        // Slow arms of a cross stay in their row of pixels for most of a window: some px/s are beyond reach.
+        // The arms of a slow cross stay in one row of pixels for most of a window, which costs some px/s.
         if ((flow - truth).norm() < 0.12 * truth.norm() + 8.0) ++good;
       }
     }
@@ -61,10 +61,10 @@ TEST(EstimateFlow, FindsSlowAndFastFlowsFromNothing) {
   }
 }
 
-TEST(EstimateFlow, SaysWhereThereIsNothing) {
+TEST(EstimateFlow, FailsWithoutEvents) {
   const events::EventHistory history(50, 50);
   Vector2d flow = Vector2d::Zero();
-  EXPECT_FALSE(EstimateFlow(history, 0, 25, 25, TrackerOptions{}, &flow));
+  EXPECT_FALSE(EstimateFlow(history, 0, {25.0, 25.0}, TrackerOptions{}, &flow));
 }
 
 }  // namespace

@@ -20,13 +20,13 @@ using Eigen::Vector3d;
 constexpr double kStepS = 0.02;
 constexpr double kNoisePx = 0.15;
 
-/// Errors after 30 frames, px, of positions with noise: as they came, and filtered.
+/// Errors of noisy positions after 30 frames, raw and filtered, px.
 struct Errors {
   std::vector<double> across_raw, across, along_raw, along;
 };
 
-/// A camera drives by resting points at 1 unit a second, its heading at frame k is heading(k), and it turns and shakes.
-/// The filter is told one and the same heading, straight ahead.
+/// A camera passes static points at 1 unit/s with random rotations; its direction in frame k is heading(k). The filter
+/// gets a constant direction, straight ahead.
 class Drive {
  public:
   Drive(int points, unsigned seed) : random_(seed) {
@@ -43,9 +43,9 @@ class Drive {
     Errors errors;
     std::vector<Vector2d> filtered;
     for (int k = 0; k <= 30; ++k) {
-      const Vector3d turn(0.004 * normal(random_), 0.004 * normal(random_) + 0.002, 0.004 * normal(random_));
+      const Vector3d rotation(0.004 * normal(random_), 0.004 * normal(random_) + 0.002, 0.004 * normal(random_));
       if (k > 0) {
-        for (auto& point : points_) point = geometry::so3::Exp(turn) * (point - kStepS * heading(k).normalized());
+        for (auto& point : points_) point = geometry::so3::Exp(rotation) * (point - kStepS * heading(k).normalized());
       }
       std::vector<FeatureStep> steps;
       std::vector<Vector2d> truth, noisy;
@@ -79,25 +79,50 @@ class Drive {
   std::vector<Vector3d> points_;
 };
 
-TEST(EpipolarFilter, TakesAwayWhatErrsAcrossTheLines) {
+TEST(EpipolarDeviation, JacobianAgreesWithTheNumericOne) {
+  constexpr double kDifference = 1e-4;
+  const geometry::Camera camera(geometry::MvsecDavis346());
+  const JacobianTable jacobians(camera);
+  const CameraMotion motion{Vector3d(0.2, -0.1, 1.0).normalized(), Vector3d::Zero()};
+  const CameraMotion::Tangents tangents = motion.DirectionTangents();
+  for (const Vector3d& point : {Vector3d(1.0, 0.8, 3.0), Vector3d(-1.5, 0.5, 4.0), Vector3d(0.3, -1.0, 2.5)}) {
+    // Position after a step with a correction of the rotation and the direction.
+    const auto seen = [&](const EpipolarDeviation::Correction& correction) {
+      const Vector3d translation = kStepS * (motion.direction + tangents * correction.tail<2>());
+      return camera.Project(geometry::so3::Exp(correction.head<3>()) * Vector3d(point - translation));
+    };
+    const FeatureStep step{camera.Project(point), seen(EpipolarDeviation::Correction::Zero()), 1.0 / point.z()};
+    const EpipolarDeviation deviation = ComputeEpipolarDeviation(motion, tangents, jacobians, kStepS, step);
+    ASSERT_TRUE(deviation.observable());
+    for (int i = 0; i < 5; ++i) {
+      const EpipolarDeviation::Correction difference = kDifference * EpipolarDeviation::Correction::Unit(i);
+      const double numeric = deviation.normal.dot(seen(difference) - seen(-difference)) / (2.0 * kDifference);
+      EXPECT_NEAR(deviation.jacobian[i], numeric, 0.02 * deviation.jacobian.norm()) << i;
+    }
+    EXPECT_NEAR(deviation.value, 0.0, 0.02);  // a static point moves along its line
+    EXPECT_NEAR(deviation.baseline_px, (step.measured - step.previous).norm(), 0.02 * deviation.baseline_px);
+  }
+}
+
+TEST(EpipolarFilter, ReducesErrorsAcrossTheLines) {
   const Errors errors = Drive(120, 1).Run([](int) { return Vector3d::UnitZ(); });
   EXPECT_LT(Median(errors.across), 0.6 * Median(errors.across_raw));
   EXPECT_NEAR(Median(errors.along), Median(errors.along_raw), 0.2 * Median(errors.along_raw));
 }
 
-TEST(EpipolarFilter, AWrongHeadingDoesNotPullAllFeatures) {
-  // 3 degrees off all the time: what all have in common is no error of the features.
+TEST(EpipolarFilter, AWrongDirectionDoesNotMoveAllFeatures) {
+  // 3 degrees off all the time: what all features share is no error of theirs.
   const Errors errors = Drive(120, 2).Run([](int) { return Vector3d(0.05, 0.0, 1.0); });
   EXPECT_LT(Median(errors.across), 0.8 * Median(errors.across_raw));
 }
 
-TEST(EpipolarFilter, KeepsItsHandsOffAHandHeldCamera) {
+TEST(EpipolarFilter, LeavesAHandHeldCameraAlone) {
   const auto heading = [](int k) { return Vector3d(std::sin(0.9 * k), std::cos(1.3 * k), 1.0); };
   const Errors errors = Drive(120, 3).Run(heading);
   EXPECT_LT(Median(errors.across), 1.3 * Median(errors.across_raw));
 }
 
-TEST(EpipolarFilter, AThingThatMovesByItselfKeepsItsPosition) {
+TEST(EpipolarFilter, AMovingObjectKeepsItsPosition) {
   const geometry::Camera camera(geometry::MvsecDavis346());
   const JacobianTable jacobians(camera);
   std::vector<FeatureStep> steps;

@@ -19,7 +19,7 @@ cv::Mat Texture() {
   return image;
 }
 
-/// The response by its definition: sums over 7 x 7 px of the products of Sobel gradients of the smoothed root.
+/// The response by definition, from sums over 7 x 7 px of the products of the smoothed root's Sobel gradients.
 double Defined(const cv::Mat& image, int x, int y) {
   const auto smooth = [&](int u, int v) {
     double sum = 0.0, weights = 0.0;
@@ -48,7 +48,7 @@ double Defined(const cv::Mat& image, int x, int y) {
   return a * c - b * b - 0.04 * (a + c) * (a + c);
 }
 
-TEST(Harris, RespondsAsDefined) {
+TEST(Harris, MatchesTheDefinition) {
   const cv::Mat image = Texture();
   ThreadPool pool(2);
   Harris harris;
@@ -61,7 +61,7 @@ TEST(Harris, RespondsAsDefined) {
   }
 }
 
-TEST(Harris, StaysZeroAtTheBorderWhateverCameBefore) {
+TEST(Harris, IsZeroAtTheBorderWhateverImageCameBefore) {
   ThreadPool pool(1);
   Harris harris;
   harris.Respond(Texture(), &pool);

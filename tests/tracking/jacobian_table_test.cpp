@@ -25,8 +25,8 @@ TEST(JacobianTable, JacobiansAgreeWithNumericOnes) {
       EXPECT_LT(((moved - pixel) / kStep - at.J_pixel_normalized.col(axis)).norm(), 0.1);
     }
     for (int axis = 0; axis < 3; ++axis) {
-      const Vector3d turned = geometry::so3::Exp(kStep * Vector3d::Unit(axis)) * at.normalized.homogeneous();
-      EXPECT_LT(((camera.Project(turned) - pixel) / kStep - at.J_pixel_rotation.col(axis)).norm(), 0.1);
+      const Vector3d rotated = geometry::so3::Exp(kStep * Vector3d::Unit(axis)) * at.normalized.homogeneous();
+      EXPECT_LT(((camera.Project(rotated) - pixel) / kStep - at.J_pixel_rotation.col(axis)).norm(), 0.1);
     }
   }
 }

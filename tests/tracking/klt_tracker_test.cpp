@@ -29,7 +29,7 @@ TrackerOptions KltWith(int events, double max_window_s) {
   return options;
 }
 
-TEST(KltTracker, FollowsASceneThatTurnsBack) {
+TEST(KltTracker, FollowsASceneThatReverses) {
   const auto shift = [](double t) -> Vector2d { return 0.6 / M_PI * std::sin(M_PI * t / 0.6) * Vector2d(150, 40); };
   const TrackedStream result = TrackAll(CrossScene(75, 4).Events(shift, 0.6, 1000.0), KltWith(kAnyNumber, 0.02));
   std::vector<double> errors;
@@ -45,13 +45,13 @@ TEST(KltTracker, FollowsASceneThatTurnsBack) {
   EXPECT_LT(errors[errors.size() / 2], 0.7);
 }
 
-/// By how many seconds the positions lag behind the crosses, in a scene of constant speed.
+/// Mean lag of the positions behind the crosses of a scene of constant speed, s.
 double MeanLag(const events::EventColumns& events, const CrossScene& scene, double speed,
                const TrackerOptions& options) {
   double sum = 0.0;
   int count = 0;
   for (const auto& observation : TrackAll(events, options).tracks) {
-    if (ToSeconds(observation.t) < 0.1) continue;  // images without all their events yet
+    if (ToSeconds(observation.t) < 0.1) continue;  // the first images lack events
     const Vector2d point(observation.x - speed * ToSeconds(observation.t), observation.y);
     const auto nearest =
         std::ranges::min_element(scene.centres, {}, [&](const Vector2d& c) { return (c - point).squaredNorm(); });
@@ -63,7 +63,7 @@ double MeanLag(const events::EventColumns& events, const CrossScene& scene, doub
   return sum / std::max(1, count);
 }
 
-TEST(KltTracker, PositionsAreLateByHalfAWindow) {
+TEST(KltTracker, PositionsLagByHalfAWindow) {
   const CrossScene scene(60, 4);
   for (const double speed : {150.0, -150.0}) {
     const events::EventColumns events = scene.Events([&](double t) { return Vector2d(speed * t, 0); }, 0.4, 1000.0);
@@ -92,7 +92,7 @@ TEST(KltTracker, NoTrackOutlivesAChangeOfScene) {
   EXPECT_LE(both, before / 5);
 }
 
-TEST(KltTracker, SameTracksForAnyNumberOfThreads) {
+TEST(KltTracker, TracksDoNotDependOnTheNumberOfThreads) {
   const events::EventColumns events =
       CrossScene(75, 4).Events([](double t) { return Vector2d(120 * t, 30 * t); }, 0.4, 1000.0);
   const events::Tracks one = TrackAll(events, KltWith(3000, 0.1), 1).tracks;
@@ -104,7 +104,7 @@ TEST(KltTracker, SameTracksForAnyNumberOfThreads) {
   EXPECT_TRUE(std::ranges::equal(one, three, same));
 }
 
-TEST(TrackerOptions, RefusesWhatIsNoMethodAndNoImage) {
+TEST(TrackerOptions, RefusesInvalidMethodsAndImages) {
   TrackerOptions options;
   Parameters parameters;
   Register(parameters, options);

@@ -8,7 +8,8 @@
 
 namespace evo::tracking::testing {
 
-/// Events of edges near the centre under a known motion of the patch, with pixel noise.
+/// Events of edges near the centre of a patch with a known affine motion; half a window on either side of the reference
+/// instant, with pixel noise.
 inline events::LocalEvents PatchEvents(const PatchMotion& motion, double half_window_s, int count, unsigned seed) {
   std::mt19937 random(seed);
   const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };

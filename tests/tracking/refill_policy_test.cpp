@@ -1,14 +1,14 @@
+#include "tracking/detection/refill_policy.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cstddef>
 #include <vector>
 
-#include "tracking/tracker.hpp"
-
 namespace evo::tracking {
 namespace {
 
-/// The frames of the first 20 in which new features are looked for, if so many are alive in each.
+/// Those of 20 frames in which new features are due if so many are alive in each.
 std::vector<int> RefilledFrames(std::size_t alive) {
   TrackerOptions options;
   options.features = 100;
@@ -22,13 +22,13 @@ std::vector<int> RefilledFrames(std::size_t alive) {
   return frames;
 }
 
-TEST(RefillPolicy, LooksForFeaturesWhereTooFewAreAliveButNotInEveryFrame) {
+TEST(RefillPolicy, IsDueIfTooFewAreAliveButNotInEveryFrame) {
   EXPECT_EQ(RefilledFrames(89), (std::vector<int>{0, 5, 10, 15}));
   EXPECT_EQ(RefilledFrames(50), (std::vector<int>{0, 5, 10, 15}));
   EXPECT_TRUE(RefilledFrames(90).empty());
 }
 
-TEST(RefillPolicy, LooksSoonerWhereMostAreMissing) {
+TEST(RefillPolicy, IsDueSoonerIfMostAreMissing) {
   EXPECT_EQ(RefilledFrames(49), (std::vector<int>{0, 3, 6, 9, 12, 15, 18}));
 }
 

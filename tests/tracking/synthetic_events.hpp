@@ -13,11 +13,11 @@
 
 namespace evo::tracking::testing {
 
-/// Where the scene is shifted to at time t (s), px.
+/// Shift of the scene at time t (s), px.
 using Motion = std::function<Eigen::Vector2d(double)>;
 
-/// A scene of small crosses, spread at random, that moves as a whole. Every point of a cross fires at a steady rate at
-/// the pixel it is over: no lead, no lag, and a sign of its own.
+/// Small crosses at random places that move together. Every point of a cross fires at a steady rate at its pixel,
+/// without a lag; the two arms have opposite polarities.
 struct CrossScene {
   int width = 120;
   int height = 90;
@@ -66,7 +66,7 @@ struct CrossScene {
   }
 };
 
-/// A camera of the scene's size, with a lens so long that whatever moves across it moves as a whole.
+/// A camera of the scene's size. Its lens is so long that rotations shift the image as a whole.
 inline geometry::Camera SceneCamera() {
   geometry::Calibration calibration;
   calibration.width = 120;
@@ -77,7 +77,7 @@ inline geometry::Camera SceneCamera() {
   return geometry::Camera(calibration);
 }
 
-/// Events from memory, in blocks.
+/// Reads events from memory, in blocks.
 class MemoryReader : public events::EventReader {
  public:
   explicit MemoryReader(events::EventColumns events, std::size_t block = 1000)

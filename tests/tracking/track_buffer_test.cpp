@@ -13,23 +13,23 @@ namespace {
 
 constexpr TimeNs kFrame = 20'000'000;
 
-/// A buffer that leaves positions alone and keeps what it passes on.
+/// A buffer whose windows are instants, so that positions do not change, and all that it passes on.
 struct KeepingBuffer {
   ThreadPool pool{2};
   events::Tracks passed;
-  std::size_t most_held = 0;
+  std::size_t max_held = 0;
   TrackBuffer buffer;
 
   explicit KeepingBuffer(TrackerOptions options = {})
       : buffer(geometry::Camera(geometry::MvsecDavis346()), options, &pool,
                [this](const events::Tracks& next) { passed.insert(passed.end(), next.begin(), next.end()); }) {}
 
-  /// The features `ids` in frame `frame`.
-  void Add(int frame, const std::vector<std::int64_t>& ids, const std::vector<std::int64_t>& withdrawn = {}) {
+  /// Observes the features `ids` in frame `frame`.
+  void Add(int frame, const std::vector<std::int64_t>& ids, const std::vector<std::int64_t>& rejected = {}) {
     events::Tracks seen;
     for (const auto id : ids) seen.push_back({id, frame * kFrame, 100.0 + static_cast<double>(id), 0.1 * frame});
-    buffer.Add(frame * kFrame, seen, std::vector<ObservedWindow>(seen.size()), withdrawn);
-    most_held = std::max(most_held, buffer.held().size());
+    buffer.Add(frame * kFrame, seen, std::vector<ObservedWindow>(seen.size()), rejected);
+    max_held = std::max(max_held, buffer.held().size());
   }
 
   std::set<std::int64_t> Ids() const {
@@ -39,7 +39,7 @@ struct KeepingBuffer {
   }
 };
 
-TEST(TrackBuffer, PassesOnEverythingOnceInOrder) {
+TEST(TrackBuffer, PassesOnAllObservationsOnceInOrder) {
   for (const int frames : {2, 3, 249, 250, 252, 1000, 2003}) {
     KeepingBuffer buffer;
     for (int frame = 0; frame < frames; ++frame) buffer.Add(frame, {1, 2, 3 + frame / 10, 4 + frame / 10});
@@ -52,15 +52,15 @@ TEST(TrackBuffer, PassesOnEverythingOnceInOrder) {
   }
 }
 
-TEST(TrackBuffer, HoldsNoMoreOfALongStream) {
+TEST(TrackBuffer, HoldsNoMoreForALongStream) {
   KeepingBuffer one, ten;
   for (int frame = 0; frame < 3000; ++frame) one.Add(frame, {1, 2, 3});
   for (int frame = 0; frame < 30000; ++frame) ten.Add(frame, {1, 2, 3});
-  EXPECT_EQ(one.most_held, ten.most_held);
-  EXPECT_LT(ten.most_held, 3u * 800);
+  EXPECT_EQ(one.max_held, ten.max_held);
+  EXPECT_LT(ten.max_held, 3u * 800);
 }
 
-TEST(TrackBuffer, FeaturesSeenOnceArePassedOver) {
+TEST(TrackBuffer, DropsFeaturesObservedOnce) {
   KeepingBuffer buffer;
   buffer.Add(0, {1, 2});
   buffer.Add(1, {1, 3});
@@ -73,26 +73,26 @@ TEST(TrackBuffer, FeaturesSeenOnceArePassedOver) {
   EXPECT_EQ(buffer.Ids(), (std::set<std::int64_t>{1, 5, 3000}));
 }
 
-TEST(TrackBuffer, WithdrawnFeaturesLeaveNothing) {
-  // The latest that a feature may be withdrawn, wherever it is born with respect to what is passed on together.
-  for (int born = 0; born < 1200; born += 7) {
+TEST(TrackBuffer, DropsRejectedFeatures) {
+  // A feature is rejected as late as possible, whatever its first frame is relative to the segments.
+  for (int first = 0; first < 1200; first += 7) {
     KeepingBuffer buffer;
     for (int frame = 0; frame < 1500; ++frame) {
-      const int age = frame - born;
-      if (age < 0 || age >= kOldestWithdrawn - 1) {
+      const int age = frame - first;
+      if (age < 0 || age >= kMaxRejectionAge - 1) {
         buffer.Add(frame, {1},
-                   age == kOldestWithdrawn - 1 ? std::vector<std::int64_t>{2} : std::vector<std::int64_t>{});
+                   age == kMaxRejectionAge - 1 ? std::vector<std::int64_t>{2} : std::vector<std::int64_t>{});
       } else {
         buffer.Add(frame, {1, 2});
       }
     }
     buffer.buffer.Finish();
-    ASSERT_EQ(buffer.Ids(), (std::set<std::int64_t>{1})) << born;
+    ASSERT_EQ(buffer.Ids(), (std::set<std::int64_t>{1})) << first;
     ASSERT_EQ(buffer.passed.size(), 1500u);
   }
 }
 
-TEST(TrackBuffer, NothingSeenIsNothingPassedOn) {
+TEST(TrackBuffer, PassesOnNothingIfNothingIsObserved) {
   KeepingBuffer buffer;
   buffer.buffer.Finish();
   for (int frame = 0; frame < 2000; ++frame) buffer.Add(frame, {});

@@ -24,15 +24,17 @@ using evo::tracking::testing::TracksById;
 
 constexpr double kDuration = 0.6;
 
-/// To the right, slower and slower, then back to the left.
+/// To the right with falling speed, then back to the left.
 Vector2d ThereAndBack(double t) { return 0.6 / M_PI * std::sin(M_PI * t / 0.6) * Vector2d(150.0, 40.0); }
 
-/// From begin to end of the tracks that live from `born_by_s` to `alive_at_s` in a scene that moves so, px.
-std::vector<Vector2d> Errors(const TracksById& tracks, const Motion& moved, double born_by_s, double alive_at_s) {
+/// Errors of the displacement from the first to the last observation, of the tracks that span [`first_before_s`,
+/// `last_after_s`] in a scene with this motion, px.
+std::vector<Vector2d> Errors(const TracksById& tracks, const Motion& moved, double first_before_s,
+                             double last_after_s) {
   std::vector<Vector2d> errors;
   for (const auto& [id, track] : tracks) {
     const auto &first = track.front(), &last = track.back();
-    if (ToSeconds(first.t) > born_by_s || ToSeconds(last.t) < alive_at_s) continue;
+    if (ToSeconds(first.t) > first_before_s || ToSeconds(last.t) < last_after_s) continue;
     errors.push_back(Vector2d(last.x - first.x, last.y - first.y) -
                      (moved(ToSeconds(last.t)) - moved(ToSeconds(first.t))));
   }
@@ -63,7 +65,7 @@ class TrackEventsTest : public ::testing::Test {
 events::EventColumns* TrackEventsTest::events = nullptr;
 TrackedStream* TrackEventsTest::result = nullptr;
 
-TEST_F(TrackEventsTest, TracksFollowASceneThatTurnsBack) {
+TEST_F(TrackEventsTest, TracksFollowAReversal) {
   const std::vector<Vector2d> errors = Errors(ById(result->tracks), ThereAndBack, 0.3, 0.35);
   ASSERT_GE(errors.size(), 10u);
   Vector2d mean = Vector2d::Zero();
@@ -72,11 +74,11 @@ TEST_F(TrackEventsTest, TracksFollowASceneThatTurnsBack) {
   EXPECT_LT(mean.norm(), 0.4);
 }
 
-/// How far ahead of the nearest cross features lie, px along the scenes' constant velocity, in the median: some are on
-/// the arms of one.
+/// Median of the features' distances ahead of the nearest cross, along the scenes' constant velocity, px. Some features
+/// are on the arms of a cross, hence the median.
 double LeadOverCrosses(const Vector2d& velocity) {
   TrackerOptions options;
-  options.uninformative_ratio = 0.0;  // as many crosses as can be had
+  options.uninformative_ratio = 0.0;  // to have many crosses
   std::vector<double> leads;
   for (unsigned seed = 4; seed < 12; ++seed) {
     const CrossScene scene(60, seed);
@@ -95,14 +97,14 @@ double LeadOverCrosses(const Vector2d& velocity) {
 }
 
 TEST(TrackEvents, PositionsAreThoseAtTheirStamp) {
-  // Crosses look the same from both sides: were positions late by 1 ms, features would lie 0.2 px behind them.
+  // Crosses are symmetric: positions that are late by 1 ms would lie 0.2 px behind them.
   for (const Vector2d& velocity : {Vector2d(200, 0), Vector2d(-200, 0), Vector2d(0, 200), Vector2d(0, -200)}) {
     EXPECT_LT(std::abs(LeadOverCrosses(velocity)), 0.15) << velocity.transpose();
   }
 }
 
 TEST(TrackEvents, FeaturesOutliveAStop) {
-  // To the right, to rest at 0.5 s, and on from 0.9 s: what stands still makes no events.
+  // To the right, at rest from 0.5 s to 0.9 s: a resting scene causes no events.
   const auto moved = [](double t) {
     constexpr double kFast = 120.0;  // px/s
     const auto ramp = [](double s) { return s < 0.0 ? 0.0 : s < 0.2 ? 2.5 * s * s : 0.1 + s - 0.2; };
@@ -128,9 +130,9 @@ TEST(TrackEvents, FeaturesOutliveAStop) {
   EXPECT_LT(MedianNorm(errors), 0.2);
 }
 
-/// Of the tracks of eight scenes that live from before to after a bump, px.
+/// Errors of the tracks of eight scenes that span a bump, px.
 std::vector<Vector2d> ErrorsOverABump(bool rotation_correction, double window_curvature_px) {
-  // Along at 40 px/s, and besides 22 px up within 60 ms and back within 160 ms.
+  // To the right at 40 px/s, and besides 22 px up within 60 ms and back within 160 ms.
   const auto moved = [](double t) {
     const double s = t - 0.3;
     const auto wave = [](double u) { return 0.5 - 0.5 * std::cos(M_PI * std::clamp(u, 0.0, 1.0)); };
@@ -139,7 +141,7 @@ std::vector<Vector2d> ErrorsOverABump(bool rotation_correction, double window_cu
   TrackerOptions options;
   options.rotation_correction = rotation_correction;
   options.window_curvature_px = window_curvature_px;
-  options.uninformative_ratio = 0.0;  // as many crosses as can be had
+  options.uninformative_ratio = 0.0;  // to have many crosses
   std::vector<Vector2d> errors;
   for (unsigned seed = 6; seed < 14; ++seed) {
     const TrackedStream tracked = TrackAll(CrossScene(120, seed).Events(moved, 0.7, 1000.0), options, 2);
@@ -148,30 +150,30 @@ std::vector<Vector2d> ErrorsOverABump(bool rotation_correction, double window_cu
   return errors;
 }
 
-double AstrayShare(const std::vector<Vector2d>& errors) {
-  const auto astray = std::ranges::count_if(errors, [](const Vector2d& error) { return error.norm() > 1.0; });
-  return static_cast<double>(astray) / static_cast<double>(errors.size());
+double OutlierRatio(const std::vector<Vector2d>& errors) {
+  const auto outliers = std::ranges::count_if(errors, [](const Vector2d& error) { return error.norm() > 1.0; });
+  return static_cast<double>(outliers) / static_cast<double>(errors.size());
 }
 
-constexpr double kAnyBend = 1000.0;
+constexpr double kAnyCurvature = 1000.0;
 
-TEST(TrackEvents, FeaturesFollowAJolt) {
-  const std::vector<Vector2d> errors = ErrorsOverABump(true, kAnyBend);
+TEST(TrackEvents, FeaturesFollowAnUnpredictedRotation) {
+  const std::vector<Vector2d> errors = ErrorsOverABump(true, kAnyCurvature);
   EXPECT_GE(errors.size(), 100u);
-  EXPECT_LE(AstrayShare(errors), 0.02);
-  // They take a neighbour for themselves.
-  EXPECT_GE(AstrayShare(ErrorsOverABump(false, kAnyBend)), 0.5);
+  EXPECT_LE(OutlierRatio(errors), 0.02);
+  // Without the correction they take a neighbour's pattern for their own.
+  EXPECT_GE(OutlierRatio(ErrorsOverABump(false, kAnyCurvature)), 0.5);
 }
 
-TEST(TrackEvents, ShortWindowsKeepFeaturesInAJolt) {
+TEST(TrackEvents, ShortWindowsKeepFeaturesInAnUnpredictedRotation) {
   for (const bool rotation_correction : {true, false}) {
     const std::vector<Vector2d> errors = ErrorsOverABump(rotation_correction, TrackerOptions().window_curvature_px);
     EXPECT_GE(errors.size(), 80u);
-    EXPECT_LE(AstrayShare(errors), 0.04);
+    EXPECT_LE(OutlierRatio(errors), 0.04);
   }
 }
 
-TEST_F(TrackEventsTest, MostTracksOutliveTheTurn) {
+TEST_F(TrackEventsTest, MostTracksOutliveTheReversal) {
   std::map<std::int64_t, int> count;
   for (const auto& observation : result->tracks) ++count[observation.id];
   double frames = 0;
@@ -207,7 +209,7 @@ TEST_F(TrackEventsTest, AHotPixelIsNoFeature) {
   EXPECT_TRUE(TrackAll(hot, {}).tracks.empty());
 }
 
-TEST(TrackEvents, SaysWhenThereAreNoTwoFrames) {
+TEST(TrackEvents, ThrowsIfTheEventsSpanFewerThanTwoFrames) {
   events::EventColumns few;
   few.push_back(0, 1, 1, 1);
   few.push_back(1000, 2, 2, 1);

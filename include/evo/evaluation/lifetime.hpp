@@ -11,56 +11,56 @@
 
 namespace evo::evaluation {
 
-/// Tracks seen in fewer frames than this say nothing about stability and are left out, as in the paper's table 2.
-inline constexpr int kFewestFrames = 3;
+/// Tracks of fewer frames are too short to count, as in table 2 of D. Zhu's paper.
+inline constexpr int kMinLifetimeFrames = 3;
 
-/// Mean and spread of one quantity over the tracks; all 0 where there are no tracks.
-struct LifetimeMoments {
+/// Summary of one quantity over the tracks; 0 without tracks.
+struct LifetimeSummary {
   double mean = 0.0;
   double standard_deviation = 0.0;  ///< of the population (divided by n)
   double median = 0.0;
   double max = 0.0;
 };
 
-/// Tracks that live `low` frames or more but fewer than `high`.
+/// Number of tracks with a lifetime in [low, high) frames.
 struct LifetimeBin {
   int low = 0;
   int high = 0;
   std::int64_t tracks = 0;
 };
 
-/// Tracks that live `low` seconds or more but less than `high`.
+/// Number of tracks with a lifetime in [low, high) seconds.
 struct LifetimeSecondsBin {
   double low = 0.0;
   double high = 0.0;
   std::int64_t tracks = 0;
 };
 
-/// How long features were followed.
+/// Lifetimes of feature tracks.
 struct LifetimeStatistics {
   std::int64_t frames = 0;            ///< frames of the recording
-  double frame_interval_s = 0.0;      ///< median time from frame to frame; 0 where there are not two
-  std::int64_t tracks = 0;            ///< tracks that count: kFewestFrames observations or more
-  std::int64_t tracks_too_short = 0;  ///< tracks with fewer, left out of everything below
-  std::int64_t tracks_cut_short = 0;  ///< counted tracks still alive in the last frame: they would have lived longer
-  LifetimeMoments in_frames;          ///< observations of a track
-  LifetimeMoments in_seconds;         ///< last stamp of a track minus its first
-  /// Without holes from kFewestFrames to past the longest track; equal widths of 1, 2, 5, 10, 20, ... frames.
+  double frame_interval_s = 0.0;      ///< median time between frames; 0 for fewer than two
+  std::int64_t tracks = 0;            ///< counted tracks, of at least kMinLifetimeFrames observations
+  std::int64_t tracks_too_short = 0;  ///< tracks of fewer observations, not in the numbers below
+  std::int64_t tracks_censored = 0;   ///< counted tracks still alive in the last frame (right-censored)
+  LifetimeSummary in_frames;          ///< number of observations
+  LifetimeSummary in_seconds;         ///< last stamp minus the first
+  /// Contiguous bins from kMinLifetimeFrames to past the longest track, of equal widths of 1, 2, 5, 10, 20, ... frames.
   std::vector<LifetimeBin> histogram;
-  /// Without holes from 0 to past the longest track; equal widths of 1, 2, 5, 10, 20, ... frame intervals, so that all
-  /// bins hold equally many of the lifetimes that there can be.
+  /// Contiguous bins from 0 to past the longest track, of equal widths of 1, 2, 5, 10, 20, ... frame intervals, so that
+  /// each bin holds equally many of the possible lifetimes.
   std::vector<LifetimeSecondsBin> histogram_seconds;
 };
 
-/// Collects the lifetimes of tracks that come part by part.
+/// Collects the lifetimes of tracks that arrive in parts.
 class LifetimeCounter {
  public:
-  /// The next observations, in order of time.
+  /// Adds the next observations, in order of time.
   void Add(std::span<const events::TrackObservation> observations);
-  /// Takes the tracks last seen before `t` for over: their ids will not come again. That frees memory.
+  /// Ends the tracks last observed before `t`, whose ids must not come again. This frees memory.
   void EndBefore(TimeNs t);
-  /// Of all tracks so far. `frame_stamps` are those of all frames of the recording, ascending, those without any track
-  /// included; tracks ended by EndBefore do not reach the last one.
+  /// Statistics of all tracks so far. `frame_stamps` are those of all frames of the recording, ascending, with or
+  /// without tracks; tracks ended by EndBefore do not reach the last one.
   LifetimeStatistics Statistics(std::span<const TimeNs> frame_stamps) const;
 
  private:
@@ -69,7 +69,7 @@ class LifetimeCounter {
     TimeNs first = 0;
     TimeNs last = 0;
   };
-  /// Of kFewestFrames or more: how many tracks have each lifetime.
+  /// Number of tracks of each lifetime of at least kMinLifetimeFrames.
   struct Counts {
     std::map<int, std::int64_t> frames;
     std::map<TimeNs, std::int64_t> durations;
@@ -81,7 +81,7 @@ class LifetimeCounter {
   Counts ended_;
 };
 
-/// Of all in one call.
+/// Statistics of complete tracks.
 LifetimeStatistics ComputeLifetimes(const events::Tracks& tracks, std::span<const TimeNs> frame_stamps);
 
 }  // namespace evo::evaluation

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "evo/core/parameters.hpp"
 #include "evo/core/time.hpp"
+#include "evo/evaluation/evaluation_options.hpp"
 #include "evo/events/tracks.hpp"
 #include "evo/geometry/camera.hpp"
 #include "evo/geometry/trajectory.hpp"
@@ -14,68 +14,62 @@
 
 namespace evo::evaluation {
 
-/// The observations of one feature, in order of time.
+/// The observations of one feature in order of time.
 struct FeatureTrack {
   std::int64_t id = 0;
   std::vector<events::TrackObservation> observations;
 };
 
-/// In order of id.
+/// Groups observations by feature, in order of id.
 std::vector<FeatureTrack> GroupById(const events::Tracks& tracks);
 
-/// Whether a track can be compared with the truth, or why not.
-enum class TrackVerdict {
-  kJudged,
-  kTooShort,         ///< fewer than two observations at which the true position is known
+/// Whether a track is evaluated, or why not.
+enum class TrackStatus {
+  kEvaluated,
+  kTooShort,         ///< fewer than two observations have a true position
   kNoTruth,          ///< no true track of this id, or no pose, at any of its stamps
-  kNoDepth,          ///< the depth where it begins is unknown or jumps there
-  kMoves,            ///< begins on or beside something that moves by itself
-  kNotTriangulated,  ///< its rays do not meet in one point in front of the cameras
+  kNoDepth,          ///< the depth at its start is unknown or discontinuous
+  kMovingObject,     ///< starts on or next to a moving object
+  kNotTriangulated,  ///< its rays do not meet in a point in front of the cameras
 };
 
-/// How the point behind one track truly moved, in raw (distorted) sensor pixels.
+/// One position for each observation of a track, at its stamp; empty where unknown.
+using TruePositions = std::vector<std::optional<Eigen::Vector2d>>;
+
+/// The true motion of the point behind one track, in raw (distorted) sensor pixels.
 struct TrueTrack {
-  TrackVerdict verdict = TrackVerdict::kNoTruth;
-  /// One for each observation of the track, at its stamp; empty where not known or not visible.
-  std::vector<std::optional<Eigen::Vector2d>> positions;
-  /// The same for the other surfaces around the place where it begins: a feature at the outline of a thing may be a
-  /// mark on either side of it. As long as they are in the image, hidden or not.
-  std::vector<std::vector<std::optional<Eigen::Vector2d>>> beside;
-  /// The first known position is the track's own: the truth starts from it, and there is no error to see there.
+  TrackStatus status = TrackStatus::kNoTruth;
+  TruePositions positions;  ///< empty where unknown or not visible
+  /// Positions of points on the other surfaces around the track's start, because a feature at an occluding contour may
+  /// be a texture on either side of it. They are known while they are in the image, occluded or not.
+  std::vector<TruePositions> other_surfaces;
+  /// The truth starts from the track's own first position, so that position has no error.
   bool starts_at_observation = false;
-  /// The last instant at which the point is seen; empty if that is not known.
-  std::optional<TimeNs> visible_until;
+  std::optional<TimeNs> visible_until;  ///< last instant at which the point is visible; empty if unknown
 };
 
-struct TrackTruthOptions {
-  double depth_edge = 0.1;        ///< neighbouring depths that differ by a larger share belong to different surfaces
-  double surface_reach_px = 3.0;  ///< a feature may be on any surface this near to the place where it begins
-};
-void Register(Parameters& parameters, TrackTruthOptions& options);
+// Three sources of truth. Each returns one TrueTrack for each of `tracks`, in their order. The truth is interpolated
+// between stamps at most `max_gap` apart and never extrapolated. Sources with poses assume a static world. They throw
+// Error (kInput) if more than a fifth of the positions lie off the sensor or outside the lens model, because tracks and
+// calibration then do not belong together.
 
-// Three sources of truth. Each gives one TrueTrack for each of `tracks`, in their order. `max_gap`: the truth is
-// interpolated between stamps that are no farther apart, and never extrapolated. The world must stand still where
-// poses are used. All throw Error (kInput) when more than a fifth of the positions lie off the sensor or outside the
-// lens model: tracks and calibration do not belong together.
-
-/// A file of true tracks with the ids of the estimate, as rpg_feature_tracking_analysis makes them. It interpolates the
-/// estimate at the stamps of the truth; here the truth is interpolated, linearly, at the stamps of the estimate.
+/// From a file of true tracks with the ids of the estimate, as rpg_feature_tracking_analysis makes them. That program
+/// interpolates the estimate at the stamps of the truth; here the truth is interpolated at the stamps of the estimate.
 std::vector<TrueTrack> TruthFromTracks(const std::vector<FeatureTrack>& tracks, const events::Tracks& truth,
                                        TimeNs max_gap);
 
-/// Poses and depth maps: the point is where the ray of the first observation meets the surface in the depth map
-/// nearest in time, and is projected into the camera at each later stamp. It is visible until it leaves the image or
-/// lies behind the surface of a depth map, both looked for at the stamps of the maps. (The "reprojection" of
-/// rpg_feature_tracking_analysis, there without lens distortion and occlusion.) Where the map tells what moves, tracks
-/// that begin within `surface_reach_px` of such things are not judged.
-/// Throws Error (kInput) where the maps have not the size of the sensor.
+/// From poses and depth maps, the "reprojection" of rpg_feature_tracking_analysis with lens distortion and occlusion:
+/// the ray of the first observation meets the surface of the depth map nearest in time, and that point is projected
+/// into the camera at each later stamp. The point is visible until it leaves the image or lies behind the surface of a
+/// depth map, both tested at the stamps of the maps. If the maps mark moving objects, tracks that start within
+/// `surface_radius_px` of one are not evaluated. Throws Error (kInput) if the maps and the sensor differ in size.
 std::vector<TrueTrack> TruthFromDepth(const std::vector<FeatureTrack>& tracks, const geometry::Trajectory& trajectory,
                                       const geometry::Camera& camera, const io::DepthMapReader& maps, TimeNs max_gap,
                                       const TrackTruthOptions& options);
 
-/// Poses alone: the point is triangulated from all observations of the track by least squares and projected back. What
-/// is left is a lower bound of the error: the point follows a track that drifts, and drift along the epipolar lines
-/// becomes depth. How long the point is visible stays unknown.
+/// From poses alone: the point is triangulated from all observations of the track by least squares and projected back.
+/// The residual is a lower bound of the error, because the point follows a drifting track and drift along the epipolar
+/// lines becomes depth. The time of visibility stays unknown.
 std::vector<TrueTrack> TruthFromTriangulation(const std::vector<FeatureTrack>& tracks,
                                               const geometry::Trajectory& trajectory, const geometry::Camera& camera,
                                               TimeNs max_gap);

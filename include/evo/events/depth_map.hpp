@@ -6,12 +6,12 @@
 
 namespace evo::events {
 
-/// For each pixel the z coordinate, in m, of what the camera sees there; NaN or 0 where that is not known.
+/// The depth of each pixel: the z coordinate in the camera's frame, in m. NaN or 0 if unknown.
 struct DepthMap {
   int width = 0;              ///< px
   int height = 0;             ///< px
   std::vector<double> depth;  ///< height x width, row-major
-  /// The same: 1 where what the camera sees moves by itself, 0 where it rests; empty if that is not known.
+  /// 1 where the pixel shows a moving object, 0 where it shows the resting scene; height x width, empty if unknown.
   std::vector<std::uint8_t> moving = {};
 
   double At(int x, int y) const { return depth[IndexOf(x, y)]; }
@@ -23,11 +23,11 @@ struct DepthMap {
   }
 };
 
-/// For each pixel how far, in px, what it shows moves until a later time; NaN where that is not known.
+/// The displacement of each pixel's point until a later instant, in px. NaN if unknown.
 struct FlowMap {
   int width = 0;             ///< px
   int height = 0;            ///< px
-  std::vector<double> flow;  ///< 2 x height x width, row-major: to the right, then down
+  std::vector<double> flow;  ///< 2 x height x width, row-major: the x components, then the y components
 };
 
 }  // namespace evo::events

@@ -8,7 +8,7 @@
 
 namespace evo::events {
 
-/// Events as columns of equal length, in order of time (ties allowed).
+/// Events as columns of equal length, ordered by time (equal stamps are allowed).
 struct EventColumns {
   std::vector<TimeNs> t;
   std::vector<std::uint16_t> x;       ///< px, raw sensor column

@@ -8,7 +8,7 @@
 
 namespace evo::events {
 
-/// Where a feature was at one instant, in raw (distorted) sensor pixels.
+/// The position of a feature at one instant, in raw (distorted) sensor pixels.
 struct TrackObservation {
   std::int64_t id = 0;
   TimeNs t = 0;
@@ -17,10 +17,10 @@ struct TrackObservation {
   bool operator==(const TrackObservation&) const = default;
 };
 
-/// Sorted by time, then id; one observation for each id and stamp.
+/// Observations ordered by time, then id, with at most one for each id and stamp.
 using Tracks = std::vector<TrackObservation>;
 
-/// Takes the next observations of tracks, sorted by time, then id.
+/// Takes the next observations, ordered by time, then id.
 using TrackSink = std::function<void(Tracks)>;
 
 }  // namespace evo::events

@@ -5,22 +5,22 @@
 
 namespace evo::report {
 
-/// A drawing in gnuplot's language.
+/// A figure as a gnuplot script.
 struct Figure {
-  std::string data;    ///< text of NAME.dat, which `script` may read by that name
-  std::string script;  ///< everything but terminals and outputs; run once for each of them, after a `reset`
-  int width = 900;     ///< px of the SVG; the PDF has the same shape, 7 inches wide
+  std::string data;    ///< text of NAME.dat, which `script` reads by that name
+  std::string script;  ///< all but terminal and output; runs once for each of them, after a `reset`
+  int width = 900;     ///< of the SVG (px); the PDF has the same aspect ratio and is 7 inches wide
   int height = 500;    ///< px
 };
 
-/// Draws figures into a folder with the program gnuplot. Where that is missing or fails there is one warning in the
-/// log and no picture, but the data and the script are written all the same.
+/// Draws figures into a folder with the program gnuplot. If that is missing or fails, there is one warning in the log
+/// and no picture; data and script are written nevertheless.
 class Gnuplot {
  public:
   explicit Gnuplot(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
   /// Writes NAME.dat, NAME.gp, NAME.svg and NAME.pdf; `gnuplot NAME.gp` in that folder draws them again.
-  /// The same figure gives the same bytes. Throws Error (kOutput).
+  /// Equal figures give equal bytes. Throws Error (kOutput).
   void Draw(const std::string& name, const Figure& figure);
 
  private:

@@ -20,36 +20,36 @@ struct ManifestInput {
 
 struct StageTime {
   std::string stage;
-  double seconds = 0.0;  ///< wall time
+  double seconds = 0.0;  ///< wall-clock time
 };
 
-/// What a run was made of and what it cost: enough to repeat it and to compare it with another.
+/// Inputs, parameters and cost of a run, enough to repeat it and to compare it with another.
 struct Manifest {
   std::string version;
   std::vector<std::string> command_line;
-  std::vector<std::pair<std::string, std::string>> parameters;  ///< every one, by dotted name, as in effect
+  std::vector<std::pair<std::string, std::string>> parameters;  ///< all effective values by dotted name
   std::vector<ManifestInput> inputs;
   std::vector<std::pair<std::string, std::int64_t>> counts;  ///< "events", "tracks", "frames", ...
   std::vector<StageTime> stages;
-  std::optional<double> recorded_s;  ///< time from the first tracked event frame to the last
-  std::vector<TimeNs> rebootstraps;  ///< stamps of the frames at which the odometry started anew
-  std::string scale;                 ///< what the trajectory's unit is: "arbitrary" or "ground" (m); empty: no odometry
+  std::optional<double> recorded_s;  ///< time from the first tracked event frame to the last (s)
+  std::vector<TimeNs> rebootstraps;  ///< stamps of the frames at which the odometry reinitialised
+  std::string scale;                 ///< unit of the trajectory: "arbitrary" or "ground" (m); empty without odometry
 };
 
-/// manifest.json; processor time and peak memory of this process so far are added. Throws Error (kOutput).
+/// Writes manifest.json with the CPU time and peak memory of this process so far. Throws Error (kOutput).
 void WriteManifest(const std::filesystem::path& path, const Manifest& manifest);
 
-/// Reads one back. Values of parameters are text as WriteManifest was given it. Throws Error (kInput) with file and, if
-/// it is not JSON, line.
+/// Reads a manifest.json; parameter values are the texts that WriteManifest was given. Throws Error (kInput) with file
+/// and, for invalid JSON, line.
 Manifest ReadManifest(const std::filesystem::path& path);
 
-/// Seconds of the recording per second of tracking and odometry; empty unless events were tracked.
+/// Seconds of the recording per second of tracking and odometry; empty without tracking.
 std::optional<double> RealTimeFactor(const Manifest& manifest);
 
-/// Most memory that this process has held so far, MB (10^6 bytes).
+/// Peak resident memory of this process so far (MB = 10^6 bytes).
 double PeakMemoryMb();
 
-/// Processor time that this process has used so far, all threads together, s.
+/// CPU time of all threads of this process so far (s).
 double CpuTimeS();
 
 }  // namespace evo::report

@@ -7,10 +7,9 @@
 
 namespace evo::report {
 
-/// Writes `canvas` as an 8-bit RGB PNG, whole or not at all; the same image gives the same bytes.
-/// Throws Error (kOutput).
+/// Writes an 8-bit RGB PNG; equal images give equal bytes. Throws Error (kOutput) and leaves no incomplete file.
 void WritePng(const std::filesystem::path& path, const Canvas& canvas);
-/// The same for an 8-bit grey PNG.
+/// Writes an 8-bit grey PNG.
 void WritePng(const std::filesystem::path& path, const events::GreyImage& image);
 
 }  // namespace evo::report

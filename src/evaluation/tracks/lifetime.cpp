@@ -8,10 +8,10 @@ namespace evo::evaluation {
 
 namespace {
 
-constexpr int kMostBins = 60;
+constexpr int kMaxBins = 60;  // that a plot can show
 
 template <typename Value>
-using Counted = std::map<Value, std::int64_t>;  // how many tracks have each value
+using Counted = std::map<Value, std::int64_t>;  // number of tracks of each value
 
 template <typename Value>
 std::int64_t Total(const Counted<Value>& values) {
@@ -20,9 +20,9 @@ std::int64_t Total(const Counted<Value>& values) {
   return total;
 }
 
-/// The value of the track with that `rank` from 0 on.
+/// Order statistic: the value of the track with `rank`, from 0.
 template <typename Value>
-Value Ranked(const Counted<Value>& values, std::int64_t rank) {
+Value OrderStatistic(const Counted<Value>& values, std::int64_t rank) {
   for (const auto& [value, tracks] : values) {
     rank -= tracks;
     if (rank < 0) return value;
@@ -30,43 +30,43 @@ Value Ranked(const Counted<Value>& values, std::int64_t rank) {
   return {};
 }
 
-/// `in_unit` turns a value into the unit of the moments.
+/// `in_unit` converts a value to the unit of the summary.
 template <typename Value, typename InUnit>
-LifetimeMoments ComputeMoments(const Counted<Value>& values, const InUnit& in_unit) {
+LifetimeSummary Summarize(const Counted<Value>& values, const InUnit& in_unit) {
   if (values.empty()) return {};
   const std::int64_t n = Total(values);
   double sum = 0.0;
   for (const auto& [value, tracks] : values) sum += static_cast<double>(tracks) * in_unit(value);
-  LifetimeMoments moments;
-  moments.mean = sum / static_cast<double>(n);
+  LifetimeSummary summary;
+  summary.mean = sum / static_cast<double>(n);
   double squares = 0.0;
   for (const auto& [value, tracks] : values) {
-    const double away = in_unit(value) - moments.mean;
-    squares += static_cast<double>(tracks) * away * away;
+    const double deviation = in_unit(value) - summary.mean;
+    squares += static_cast<double>(tracks) * deviation * deviation;
   }
-  moments.standard_deviation = std::sqrt(squares / static_cast<double>(n));
-  moments.median = 0.5 * (in_unit(Ranked(values, (n - 1) / 2)) + in_unit(Ranked(values, n / 2)));
-  moments.max = in_unit(values.rbegin()->first);
-  return moments;
+  summary.standard_deviation = std::sqrt(squares / static_cast<double>(n));
+  summary.median = 0.5 * (in_unit(OrderStatistic(values, (n - 1) / 2)) + in_unit(OrderStatistic(values, n / 2)));
+  summary.max = in_unit(values.rbegin()->first);
+  return summary;
 }
 
-/// The smallest of 1, 2, 5, 10, 20, 50, ... that covers `span` with at most kMostBins bins.
+/// The smallest of 1, 2, 5, 10, 20, 50, ... that covers `span` with at most kMaxBins bins.
 std::int64_t BinWidth(std::int64_t span) {
   for (std::int64_t decade = 1;; decade *= 10) {
     for (const std::int64_t width : {decade, 2 * decade, 5 * decade}) {
-      if ((span + width - 1) / width <= kMostBins) return width;
+      if ((span + width - 1) / width <= kMaxBins) return width;
     }
   }
 }
 
 std::vector<LifetimeBin> ComputeHistogram(const Counted<int>& frames) {
   if (frames.empty()) return {};
-  const int longest = frames.rbegin()->first;
-  const int width = static_cast<int>(BinWidth(longest - kFewestFrames + 1));
+  const int max_lifetime = frames.rbegin()->first;
+  const int width = static_cast<int>(BinWidth(max_lifetime - kMinLifetimeFrames + 1));
   std::vector<LifetimeBin> histogram;
-  for (int low = kFewestFrames; low <= longest; low += width) histogram.push_back({low, low + width, 0});
+  for (int low = kMinLifetimeFrames; low <= max_lifetime; low += width) histogram.push_back({low, low + width, 0});
   for (const auto& [lifetime, tracks] : frames) {
-    histogram[static_cast<std::size_t>((lifetime - kFewestFrames) / width)].tracks += tracks;
+    histogram[static_cast<std::size_t>((lifetime - kMinLifetimeFrames) / width)].tracks += tracks;
   }
   return histogram;
 }
@@ -83,10 +83,11 @@ TimeNs MedianInterval(std::span<const TimeNs> stamps) {
 std::vector<LifetimeSecondsBin> ComputeSecondsHistogram(const Counted<TimeNs>& durations, TimeNs interval) {
   if (durations.empty()) return {};
   const TimeNs unit = std::max<TimeNs>(1, interval);
-  const TimeNs longest = durations.rbegin()->first;
-  const TimeNs width = unit * BinWidth(longest / unit + 1);
+  const TimeNs max_lifetime = durations.rbegin()->first;
+  const TimeNs width = unit * BinWidth(max_lifetime / unit + 1);
   std::vector<LifetimeSecondsBin> histogram;
-  for (TimeNs low = 0; low <= longest; low += width) histogram.push_back({ToSeconds(low), ToSeconds(low + width), 0});
+  for (TimeNs low = 0; low <= max_lifetime; low += width)
+    histogram.push_back({ToSeconds(low), ToSeconds(low + width), 0});
   for (const auto& [duration, tracks] : durations)
     histogram[static_cast<std::size_t>(duration / width)].tracks += tracks;
   return histogram;
@@ -95,7 +96,7 @@ std::vector<LifetimeSecondsBin> ComputeSecondsHistogram(const Counted<TimeNs>& d
 }  // namespace
 
 void LifetimeCounter::Counts::Add(const Lifetime& lifetime) {
-  if (lifetime.frames < kFewestFrames) {
+  if (lifetime.frames < kMinLifetimeFrames) {
     ++too_short;
     return;
   }
@@ -127,15 +128,15 @@ LifetimeStatistics LifetimeCounter::Statistics(std::span<const TimeNs> frame_sta
   Counts counts = ended_;
   for (const auto& [id, lifetime] : open_) {
     counts.Add(lifetime);
-    const bool is_cut_short = !frame_stamps.empty() && lifetime.last >= frame_stamps.back();
-    if (is_cut_short && lifetime.frames >= kFewestFrames) ++statistics.tracks_cut_short;
+    const bool is_censored = !frame_stamps.empty() && lifetime.last >= frame_stamps.back();
+    if (is_censored && lifetime.frames >= kMinLifetimeFrames) ++statistics.tracks_censored;
   }
   statistics.tracks = Total(counts.frames);
   statistics.tracks_too_short = counts.too_short;
   statistics.histogram = ComputeHistogram(counts.frames);
   statistics.histogram_seconds = ComputeSecondsHistogram(counts.durations, interval);
-  statistics.in_frames = ComputeMoments(counts.frames, [](int frames) { return static_cast<double>(frames); });
-  statistics.in_seconds = ComputeMoments(counts.durations, ToSeconds);
+  statistics.in_frames = Summarize(counts.frames, [](int frames) { return static_cast<double>(frames); });
+  statistics.in_seconds = Summarize(counts.durations, ToSeconds);
   return statistics;
 }
 

@@ -1,6 +1,6 @@
 #include "evaluation/tracks/sensor_fit.hpp"
 
-#include <string>
+#include <fmt/format.h>
 
 #include "evo/core/error.hpp"
 
@@ -8,8 +8,8 @@ namespace evo::evaluation {
 
 namespace {
 
-constexpr double kOffSensorPx = 1.0;  // trackers may place a border feature a little outside
-constexpr double kMisfitShare = 0.2;  // a poor tracker's features leave the sensor too
+constexpr double kBorderPx = 1.0;        // trackers may place a feature slightly outside the border
+constexpr double kMaxMisfitRatio = 0.2;  // a poor tracker's features leave the sensor too
 
 }  // namespace
 
@@ -19,16 +19,15 @@ void CheckSensorFit(const std::vector<FeatureTrack>& tracks, const geometry::Cam
   for (const auto& track : tracks) {
     for (const auto& observation : track.observations) {
       const Eigen::Vector2d pixel(observation.x, observation.y);
-      misfits += camera.Contains(pixel, -kOffSensorPx) && camera.Undistort(pixel) ? 0 : 1;
+      misfits += camera.Contains(pixel, -kBorderPx) && camera.Undistort(pixel) ? 0 : 1;
       ++all;
     }
   }
-  if (static_cast<double>(misfits) <= kMisfitShare * static_cast<double>(all)) return;
-  throw Error(ErrorKind::kInput, std::to_string(misfits) + " of " + std::to_string(all) +
-                                     " track positions lie off the calibrated " + std::to_string(camera.width()) +
-                                     " x " + std::to_string(camera.height()) +
-                                     " sensor or outside its lens model; tracks and calibration do not belong "
-                                     "together");
+  if (static_cast<double>(misfits) <= kMaxMisfitRatio * static_cast<double>(all)) return;
+  throw Error(ErrorKind::kInput,
+              fmt::format("{} of {} track positions lie off the calibrated {} x {} sensor or outside its lens model; "
+                          "tracks and calibration do not belong together",
+                          misfits, all, camera.width(), camera.height()));
 }
 
 }  // namespace evo::evaluation

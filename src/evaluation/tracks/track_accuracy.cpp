@@ -1,5 +1,7 @@
 #include "evo/evaluation/track_accuracy.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,55 +15,55 @@ namespace evo::evaluation {
 
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUndetermined = std::numeric_limits<double>::quiet_NaN();
 constexpr double kWholeTracks = std::numeric_limits<double>::infinity();
-constexpr int kLargestThreshold = 31;  // of [2]'s expected feature age
-constexpr std::size_t kFewestPositions = 2;
-constexpr int kMostBins = 40;
-constexpr double kOnEdge = 1e-6;  // share of a bin: ages on a bin's edge, rounded down, are still the next bin's
+constexpr int kMaxThresholdPx = 31;       // of the expected feature age in [2]
+constexpr std::size_t kMinPositions = 2;  // one has no age
+constexpr int kMaxBins = 40;              // that a plot can show
+constexpr double kBinRounding = 1e-6;     // in bins; an age on a bin's edge belongs to the next bin despite rounding
 
-/// How far a track is within a threshold.
-struct Within {
+/// The part of a track within its feature age.
+struct StablePart {
   std::size_t positions = 0;
   double age_s = 0.0;
 };
 
-Within WithinThreshold(const TrackErrors& track, double threshold_px) {
+StablePart FindStablePart(const TrackErrors& track, double threshold_px) {
   const auto end = std::ranges::find_if(track.errors_px, [&](double error) { return error > threshold_px; });
   const auto positions = static_cast<std::size_t>(end - track.errors_px.begin());
   return {positions, positions > 0 ? track.ages_s[positions - 1] : 0.0};
 }
 
 /// Linear between order statistics (numpy's default); `sorted` ascending.
-double Quantile(const std::vector<double>& sorted, double share) {
-  if (sorted.empty()) return kNone;
-  const double place = share * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
+double Quantile(const std::vector<double>& sorted, double probability) {
+  if (sorted.empty()) return kUndetermined;
+  const double rank = probability * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(rank);
   const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (place - std::floor(place)) * (sorted[above] - sorted[below]);
+  return sorted[below] + (rank - std::floor(rank)) * (sorted[above] - sorted[below]);
 }
 
 double Mean(const std::vector<double>& values) { return ComputeStatistics(values).mean; }
 
-double MedianOf(const std::vector<double>& values) { return ComputeStatistics(values).median; }
+double Median(const std::vector<double>& values) { return ComputeStatistics(values).median; }
 
 double DistancePx(const events::TrackObservation& observation, const Eigen::Vector2d& position) {
   return std::hypot(observation.x - position.x(), observation.y - position.y());
 }
 
-/// Median error from the surface that a track follows best. A surface that is out of sight for longer than the track's
-/// own point explains as much less.
+/// Median error on the surface that a track follows best. Positions at which another surface is unknown but the track's
+/// own point is known count as infinite errors.
 double SurfaceError(const FeatureTrack& track, const TrueTrack& truth, const std::vector<double>& errors_px) {
-  double least = MedianOf(errors_px);
-  for (const auto& positions : truth.beside) {
+  double min_error = Median(errors_px);
+  for (const auto& positions : truth.other_surfaces) {
     std::vector<double> errors;
     for (std::size_t i = 1; i < positions.size(); ++i) {
       if (positions[i]) errors.push_back(DistancePx(track.observations[i], *positions[i]));
     }
     if (errors.size() < errors_px.size()) errors.resize(errors_px.size(), std::numeric_limits<double>::infinity());
-    least = std::min(least, MedianOf(errors));
+    min_error = std::min(min_error, Median(errors));
   }
-  return least;
+  return min_error;
 }
 
 void Compare(const FeatureTrack& track, const TrueTrack& truth, TrackErrors* result) {
@@ -78,7 +80,7 @@ void Compare(const FeatureTrack& track, const TrueTrack& truth, TrackErrors* res
     result->errors_px.push_back(DistancePx(observation, *position));
   }
   if (truth.visible_until) result->true_lifetime_s = ToSeconds(*truth.visible_until - start);
-  if (positions < kFewestPositions) result->verdict = TrackVerdict::kTooShort;
+  if (positions < kMinPositions) result->status = TrackStatus::kTooShort;
   result->surface_error_px = SurfaceError(track, truth, result->errors_px);
 }
 
@@ -89,20 +91,20 @@ TrackErrors CompareTrack(const FeatureTrack& track, const TrueTrack& truth, cons
   result.start = observations.front().t;
   result.observations = static_cast<std::int64_t>(observations.size());
   result.lifetime_s = ToSeconds(observations.back().t - observations.front().t);
-  result.verdict = truth.verdict;
-  if (result.judged()) Compare(track, truth, &result);
-  if (!result.judged()) return result;
-  for (const double threshold : thresholds) result.feature_ages_s.push_back(WithinThreshold(result, threshold).age_s);
+  result.status = truth.status;
+  if (result.evaluated()) Compare(track, truth, &result);
+  if (!result.evaluated()) return result;
+  for (const double threshold : thresholds) result.feature_ages_s.push_back(FindStablePart(result, threshold).age_s);
   return result;
 }
 
 double ExpectedAgeNormalized(const std::vector<TrackErrors>& tracks, double threshold_px) {
-  std::vector<double> shares;
+  std::vector<double> ratios;
   for (const auto& track : tracks) {
-    if (!track.judged() || !track.true_lifetime_s || !(*track.true_lifetime_s > 0.0)) continue;
-    shares.push_back(WithinThreshold(track, threshold_px).age_s / *track.true_lifetime_s);
+    if (!track.evaluated() || !track.true_lifetime_s || !(*track.true_lifetime_s > 0.0)) continue;
+    ratios.push_back(FindStablePart(track, threshold_px).age_s / *track.true_lifetime_s);
   }
-  return Mean(shares);
+  return Mean(ratios);
 }
 
 ThresholdAccuracy Summarize(const std::vector<TrackErrors>& tracks, double threshold_px) {
@@ -110,23 +112,23 @@ ThresholdAccuracy Summarize(const std::vector<TrackErrors>& tracks, double thres
   std::vector<double> track_means;
   std::vector<double> track_medians;
   std::vector<double> ages;
-  double judged = 0.0;
+  double evaluated = 0.0;
   double exceeding = 0.0;
-  double mostly_exceeding = 0.0;
-  double stray = 0.0;
+  double median_exceeding = 0.0;
+  double false_tracks = 0.0;
   for (const auto& track : tracks) {
-    if (!track.judged()) continue;
-    const Within within = WithinThreshold(track, threshold_px);
-    const std::span<const double> good(track.errors_px.data(), within.positions);
+    if (!track.evaluated()) continue;
+    const StablePart stable = FindStablePart(track, threshold_px);
+    const std::span<const double> good(track.errors_px.data(), stable.positions);
     errors.insert(errors.end(), good.begin(), good.end());
-    judged += 1.0;
-    if (within.positions < track.errors_px.size()) {
+    evaluated += 1.0;
+    if (stable.positions < track.errors_px.size()) {
       exceeding += 1.0;
-      mostly_exceeding += MedianOf(track.errors_px) > threshold_px ? 1.0 : 0.0;
-      stray += track.surface_error_px > threshold_px ? 1.0 : 0.0;
+      median_exceeding += Median(track.errors_px) > threshold_px ? 1.0 : 0.0;
+      false_tracks += track.surface_error_px > threshold_px ? 1.0 : 0.0;
     }
-    if (!(within.age_s > 0.0)) continue;
-    ages.push_back(within.age_s);
+    if (!(stable.age_s > 0.0)) continue;
+    ages.push_back(stable.age_s);
     const Statistics error = ComputeStatistics(good);
     track_means.push_back(error.mean);
     track_medians.push_back(error.median);
@@ -135,37 +137,35 @@ ThresholdAccuracy Summarize(const std::vector<TrackErrors>& tracks, double thres
   result.threshold_px = threshold_px;
   result.error_px = ComputeStatistics(errors);
   std::ranges::sort(errors);
-  result.error_p25_px = Quantile(errors, 0.25);
-  result.error_p75_px = Quantile(errors, 0.75);
-  result.error_p95_px = Quantile(errors, 0.95);
-  result.error_p99_px = Quantile(errors, 0.99);
+  result.error_quantiles_px = {Quantile(errors, 0.25), Quantile(errors, 0.75), Quantile(errors, 0.95),
+                               Quantile(errors, 0.99)};
   result.track_error_mean_px = Mean(track_means);
   result.track_error_median_px = ComputeStatistics(track_medians).median;
-  result.exceeding_share = exceeding / judged;
-  result.mostly_exceeding_share = mostly_exceeding / judged;
-  result.stray_share = stray / judged;
-  result.outlier_share = 1.0 - static_cast<double>(ages.size()) / judged;
+  result.exceeding_ratio = exceeding / evaluated;
+  result.median_exceeding_ratio = median_exceeding / evaluated;
+  result.false_track_ratio = false_tracks / evaluated;
+  result.outlier_ratio = 1.0 - static_cast<double>(ages.size()) / evaluated;
   result.feature_age_s = ComputeStatistics(ages);
-  result.expected_age_s = std::accumulate(ages.begin(), ages.end(), 0.0) / judged;
+  result.expected_age_s = std::accumulate(ages.begin(), ages.end(), 0.0) / evaluated;
   result.expected_age_normalized = ExpectedAgeNormalized(tracks, threshold_px);
   return result;
 }
 
-/// The smallest of 1, 2 or 5 times a power of ten that covers `longest` with at most kMostBins bins.
-double BinWidth(double longest) {
-  double decade = std::pow(10.0, std::floor(std::log10(longest / kMostBins)));
+/// The smallest of 1, 2 or 5 times a power of ten that covers `max_age` with at most kMaxBins bins.
+double BinWidth(double max_age) {
+  double decade = std::pow(10.0, std::floor(std::log10(max_age / kMaxBins)));
   for (;; decade *= 10.0) {
     for (const double width : {decade, 2.0 * decade, 5.0 * decade}) {
-      if (longest < width * kMostBins) return width;
+      if (max_age < width * kMaxBins) return width;
     }
   }
 }
 
 std::vector<AgeBin> ErrorOverAge(const std::vector<TrackErrors>& tracks) {
-  double longest = 0.0;
-  for (const auto& track : tracks) longest = std::max(longest, track.ages_s.empty() ? 0.0 : track.ages_s.back());
-  if (!(longest > 0.0)) return {};
-  const double width = BinWidth(longest);
+  double max_age = 0.0;
+  for (const auto& track : tracks) max_age = std::max(max_age, track.ages_s.empty() ? 0.0 : track.ages_s.back());
+  if (!(max_age > 0.0)) return {};
+  const double width = BinWidth(max_age);
   struct Content {
     std::vector<double> errors;
     std::set<std::int64_t> ids;
@@ -173,7 +173,7 @@ std::vector<AgeBin> ErrorOverAge(const std::vector<TrackErrors>& tracks) {
   std::map<int, Content> contents;
   for (const auto& track : tracks) {
     for (std::size_t i = 0; i < track.ages_s.size(); ++i) {
-      Content& content = contents[static_cast<int>(track.ages_s[i] / width + kOnEdge)];
+      Content& content = contents[static_cast<int>(track.ages_s[i] / width + kBinRounding)];
       content.errors.push_back(track.errors_px[i]);
       content.ids.insert(track.id);
     }
@@ -193,31 +193,33 @@ void CheckThresholds(std::vector<double>* thresholds_px) {
   const bool valid =
       std::ranges::all_of(*thresholds_px, [](double threshold) { return std::isfinite(threshold) && threshold > 0.0; });
   if (!valid || thresholds_px->empty()) {
-    throw Error(ErrorKind::kUsage, "thresholds of the track error must be positive numbers of pixels");
+    throw Error(ErrorKind::kUsage, "thresholds of the track error must be positive (px)");
   }
   thresholds_px->erase(std::unique(thresholds_px->begin(), thresholds_px->end()), thresholds_px->end());
 }
 
-void RequireJudged(const TrackAccuracy& accuracy) {
-  if (Count(accuracy, TrackVerdict::kJudged) > 0) return;
+void RequireEvaluated(const TrackAccuracy& accuracy) {
+  if (Count(accuracy, TrackStatus::kEvaluated) > 0) return;
   std::string reasons;
-  for (const auto& [verdict, reason] :
-       {std::pair{TrackVerdict::kNoTruth, " without truth at their stamps or of their ids"},
-        {TrackVerdict::kNoDepth, " without a depth where they begin"},
-        {TrackVerdict::kMoves, " on what moves"},
-        {TrackVerdict::kNotTriangulated, " that meet in no point"},
-        {TrackVerdict::kTooShort, " too short"}}) {
-    const std::int64_t count = Count(accuracy, verdict);
+  for (const auto& [status, reason] :
+       {std::pair{TrackStatus::kNoTruth, " without truth at their stamps or for their ids"},
+        {TrackStatus::kNoDepth, " without a depth at their start"},
+        {TrackStatus::kMovingObject, " on moving objects"},
+        {TrackStatus::kNotTriangulated, " that cannot be triangulated"},
+        {TrackStatus::kTooShort, " too short"}}) {
+    const std::int64_t count = Count(accuracy, status);
     if (count > 0) reasons += (reasons.empty() ? "" : ", ") + std::to_string(count) + reason;
   }
-  throw Error(ErrorKind::kNothingToDo, "no track can be compared with the truth (" + accuracy.truth + "): " + reasons +
-                                           "; do both belong to the same recording and clock?");
+  throw Error(ErrorKind::kNothingToDo,
+              fmt::format("no track can be compared with the truth ({}): {}; do both belong to the same recording and "
+                          "clock?",
+                          accuracy.truth, reasons));
 }
 
 }  // namespace
 
-std::int64_t Count(const TrackAccuracy& accuracy, TrackVerdict verdict) {
-  return std::ranges::count(accuracy.tracks, verdict, &TrackErrors::verdict);
+std::int64_t Count(const TrackAccuracy& accuracy, TrackStatus status) {
+  return std::ranges::count(accuracy.tracks, status, &TrackErrors::status);
 }
 
 TrackAccuracy EvaluateTracks(const std::vector<FeatureTrack>& tracks, const std::vector<TrueTrack>& truth,
@@ -229,13 +231,13 @@ TrackAccuracy EvaluateTracks(const std::vector<FeatureTrack>& tracks, const std:
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     accuracy.tracks.push_back(CompareTrack(tracks[i], truth[i], thresholds_px));
   }
-  RequireJudged(accuracy);
+  RequireEvaluated(accuracy);
   thresholds_px.push_back(kWholeTracks);
   for (const double threshold : thresholds_px) accuracy.thresholds.push_back(Summarize(accuracy.tracks, threshold));
-  for (int threshold = 1; threshold <= kLargestThreshold; ++threshold) {
+  for (int threshold = 1; threshold <= kMaxThresholdPx; ++threshold) {
     accuracy.expected_age_normalized += ExpectedAgeNormalized(accuracy.tracks, threshold);
   }
-  accuracy.expected_age_normalized /= kLargestThreshold;
+  accuracy.expected_age_normalized /= kMaxThresholdPx;
   accuracy.error_over_age = ErrorOverAge(accuracy.tracks);
   return accuracy;
 }

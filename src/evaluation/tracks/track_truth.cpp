@@ -11,8 +11,9 @@ namespace evo::evaluation {
 
 namespace {
 
-constexpr std::size_t kFewestViews = 3;  // two views leave one residual for three unknowns
+constexpr std::size_t kMinViews = 3;  // two views leave one residual for three unknowns
 
+/// Linear interpolation; empty outside the track and in gaps longer than `max_gap`.
 std::optional<Eigen::Vector2d> PositionAt(const std::vector<events::TrackObservation>& track, TimeNs t,
                                           TimeNs max_gap) {
   const auto after = std::ranges::lower_bound(track, t, {}, &events::TrackObservation::t);
@@ -42,12 +43,12 @@ TrueTrack Triangulate(const FeatureTrack& track, const geometry::Trajectory& tra
     indices.push_back(i);
   }
   if (views.empty()) return result;
-  result.verdict = TrackVerdict::kTooShort;
-  if (views.size() < kFewestViews) return result;
-  result.verdict = TrackVerdict::kNotTriangulated;
+  result.status = TrackStatus::kTooShort;
+  if (views.size() < kMinViews) return result;
+  result.status = TrackStatus::kNotTriangulated;
   const auto point = geometry::TriangulateViews(views);
   if (!point) return result;
-  result.verdict = TrackVerdict::kJudged;
+  result.status = TrackStatus::kEvaluated;
   for (std::size_t i = 0; i < views.size(); ++i) {
     result.positions[indices[i]] = camera.Project(views[i].T_cam_world * point->position_world);
   }
@@ -55,13 +56,6 @@ TrueTrack Triangulate(const FeatureTrack& track, const geometry::Trajectory& tra
 }
 
 }  // namespace
-
-void Register(Parameters& parameters, TrackTruthOptions& options) {
-  parameters.Add("evaluation.depth_edge", &options.depth_edge, 0.001, 1,
-                 "depth maps: neighbouring depths that differ by a larger share belong to different surfaces");
-  parameters.Add("evaluation.surface_reach_px", &options.surface_reach_px, 0.0, 20.0,
-                 "depth maps: a feature may be on any surface this near to the place where it begins (px)");
-}
 
 std::vector<FeatureTrack> GroupById(const events::Tracks& tracks) {
   std::map<std::int64_t, std::vector<events::TrackObservation>> by_id;
@@ -83,7 +77,7 @@ std::vector<TrueTrack> TruthFromTracks(const std::vector<FeatureTrack>& tracks, 
     if (found == true_tracks.end() || found->id != id) continue;
     for (std::size_t i = 0; i < observations.size(); ++i) {
       result.positions[i] = PositionAt(found->observations, observations[i].t, max_gap);
-      if (result.positions[i]) result.verdict = TrackVerdict::kJudged;
+      if (result.positions[i]) result.status = TrackStatus::kEvaluated;
     }
     result.visible_until = found->observations.back().t;
   }

@@ -1,4 +1,4 @@
-#include "evo/evaluation/kitti_segments.hpp"
+#include "evaluation/trajectory/kitti_segments.hpp"
 
 #include <cstddef>
 #include <numbers>
@@ -11,7 +11,7 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 }  // namespace
 
-KittiSegments ComputeKittiSegments(const MatchedPath& path, std::span<const double> lengths_m, int step) {
+KittiSegments ComputeKittiSegments(const MatchedTrajectory& trajectory, std::span<const double> lengths_m, int step) {
   KittiSegments segments;
   segments.step = step;
   std::vector<double> all_translations;
@@ -19,12 +19,12 @@ KittiSegments ComputeKittiSegments(const MatchedPath& path, std::span<const doub
   for (const double length : lengths_m) {
     std::vector<double> translations;
     std::vector<double> rotations;
-    std::size_t last = 0;  // ends only move forward with their starts, as distances never fall
-    for (std::size_t first = 0; first < path.size(); first += static_cast<std::size_t>(step)) {
-      while (last < path.size() && path.distance[last] <= path.distance[first] + length) ++last;
-      if (last == path.size()) break;
-      translations.push_back(100.0 * path.TranslationError(first, last) / length);
-      rotations.push_back(kDegrees * Angle(path.RotationError(first, last)) / length);
+    std::size_t last = 0;  // distances never decrease, so ends only move forward
+    for (std::size_t first = 0; first < trajectory.size(); first += static_cast<std::size_t>(step)) {
+      while (last < trajectory.size() && trajectory.distance[last] <= trajectory.distance[first] + length) ++last;
+      if (last == trajectory.size()) break;
+      translations.push_back(100.0 * trajectory.TranslationError(first, last) / length);
+      rotations.push_back(kDegrees * RotationAngle(trajectory.RotationError(first, last)) / length);
     }
     if (translations.empty()) continue;
     segments.lengths.push_back({length, ComputeStatistics(translations), ComputeStatistics(rotations)});

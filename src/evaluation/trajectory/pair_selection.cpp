@@ -1,12 +1,11 @@
-#include "evo/evaluation/pair_selection.hpp"
+#include "evaluation/trajectory/pair_selection.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <sstream>
-#include <utility>
 
 #include "evo/core/error.hpp"
 
@@ -14,35 +13,10 @@ namespace evo::evaluation {
 
 namespace {
 
-constexpr std::size_t kMostPairs = 10'000'000;  // half a gigabyte with their errors
+constexpr std::size_t kMaxPairs = 10'000'000;  // half a gigabyte with their errors
 
-constexpr std::pair<const char*, DeltaUnit> kUnits[] = {{"f", DeltaUnit::kFrames},
-                                                        {"m", DeltaUnit::kMetres},
-                                                        {"deg", DeltaUnit::kDegrees},
-                                                        {"rad", DeltaUnit::kRadians},
-                                                        {"s", DeltaUnit::kSeconds}};
-
-Delta ParseDelta(const std::string& text) {
-  Delta delta;
-  const char* const end = text.data() + text.size();
-  const auto [suffix, failure] = std::from_chars(text.data(), end, delta.value);
-  const auto* const unit = std::ranges::find(kUnits, std::string(suffix, end), [](const auto& u) { return u.first; });
-  if (failure == std::errc() && unit != std::end(kUnits)) {
-    delta.unit = unit->second;
-    delta.name = text;
-    const double largest = delta.unit == DeltaUnit::kDegrees   ? 180.0
-                           : delta.unit == DeltaUnit::kRadians ? std::numbers::pi
-                                                               : 1e6;
-    const bool whole = delta.unit != DeltaUnit::kFrames || delta.value == std::floor(delta.value);
-    if (delta.value > 0.0 && delta.value <= largest && whole) return delta;
-  }
-  throw Error(ErrorKind::kUsage, "'" + text +
-                                     "' is not a distance between poses; give a positive number and a unit, such as "
-                                     "10f (whole frames), 1s, 10m, 5deg or 0.1rad, up to half a turn");
-}
-
-/// From each pose to the next: frames, m, rad or s.
-std::vector<double> Steps(std::span<const geometry::StampedPose> poses, DeltaUnit unit) {
+/// Distance from each pose to the next (frames, m, rad or s).
+std::vector<double> StepLengths(std::span<const geometry::StampedPose> poses, DeltaUnit unit) {
   std::vector<double> steps;
   steps.reserve(poses.size());
   for (std::size_t i = 1; i < poses.size(); ++i) {
@@ -65,22 +39,23 @@ std::vector<double> Steps(std::span<const geometry::StampedPose> poses, DeltaUni
   return steps;
 }
 
-/// The sum of all steps up to each pose: never decreasing.
+/// Sum of all steps up to each pose, which never decreases.
 std::vector<double> Accumulate(std::span<const double> steps) {
-  std::vector<double> course{0.0};
-  course.reserve(steps.size() + 1);
-  for (const double step : steps) course.push_back(course.back() + step);
-  return course;
+  std::vector<double> cumulative{0.0};
+  cumulative.reserve(steps.size() + 1);
+  for (const double step : steps) cumulative.push_back(cumulative.back() + step);
+  return cumulative;
 }
 
 IndexPair Pair(std::size_t first, std::size_t second) {
   return {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(second)};
 }
 
-/// Of the entries after `i`, which must exist, the one nearest to delta ahead; the first of several.
-std::size_t NearestAfter(std::span<const double> course, std::size_t i, double delta) {
-  const auto ahead = [&](double value) { return value - course[i]; };
-  const auto later = course.subspan(i + 1);
+/// Index of the entry after `i` that is nearest to `delta` ahead, the first of several; there must be entries after
+/// `i`.
+std::size_t NearestAfter(std::span<const double> cumulative, std::size_t i, double delta) {
+  const auto ahead = [&](double value) { return value - cumulative[i]; };
+  const auto later = cumulative.subspan(i + 1);
   const auto reached = std::ranges::lower_bound(later, delta, {}, ahead);
   auto best = reached;
   if (reached != later.begin()) {
@@ -92,23 +67,23 @@ std::size_t NearestAfter(std::span<const double> course, std::size_t i, double d
   return i + 1 + static_cast<std::size_t>(best - later.begin());
 }
 
-std::vector<IndexPair> EveryPose(std::span<const double> course, double delta, double largest_difference) {
+std::vector<IndexPair> PairsFromEveryPose(std::span<const double> cumulative, double delta, double max_difference) {
   std::vector<IndexPair> pairs;
-  for (std::size_t i = 0; i + 1 < course.size(); ++i) {
-    const std::size_t j = NearestAfter(course, i, delta);
-    if (std::abs(course[j] - course[i] - delta) <= largest_difference) pairs.push_back(Pair(i, j));
+  for (std::size_t i = 0; i + 1 < cumulative.size(); ++i) {
+    const std::size_t j = NearestAfter(cumulative, i, delta);
+    if (std::abs(cumulative[j] - cumulative[i] - delta) <= max_difference) pairs.push_back(Pair(i, j));
   }
   return pairs;
 }
 
-std::vector<IndexPair> Closest(std::span<const double> course, double delta) {
-  auto pairs = EveryPose(course, delta, std::numeric_limits<double>::infinity());
-  std::erase_if(pairs, [&](const IndexPair& pair) { return pair.second + 1 == course.size(); });
+std::vector<IndexPair> ClosestPairs(std::span<const double> cumulative, double delta) {
+  auto pairs = PairsFromEveryPose(cumulative, delta, std::numeric_limits<double>::infinity());
+  std::erase_if(pairs, [&](const IndexPair& pair) { return pair.second + 1 == cumulative.size(); });
   return pairs;
 }
 
-/// A pair ends where the steps since the last end sum up to delta. `from_start`: pose 0 counts as an end.
-std::vector<IndexPair> EndToEnd(std::span<const double> steps, double delta, bool from_start) {
+/// Ends a pair where the steps since the last end add up to delta. `from_start`: pose 0 counts as an end.
+std::vector<IndexPair> ConsecutivePairs(std::span<const double> steps, double delta, bool from_start) {
   std::vector<IndexPair> pairs;
   bool begun = from_start;
   std::size_t begin = 0;
@@ -124,7 +99,7 @@ std::vector<IndexPair> EndToEnd(std::span<const double> steps, double delta, boo
   return pairs;
 }
 
-std::vector<IndexPair> EndToEndInTime(std::span<const double> seconds, double delta, double tolerance) {
+std::vector<IndexPair> ConsecutivePairsInTime(std::span<const double> seconds, double delta, double tolerance) {
   std::vector<IndexPair> pairs;
   for (std::size_t i = 0; i + 1 < seconds.size();) {
     const std::size_t j = NearestAfter(seconds, i, delta);
@@ -135,21 +110,22 @@ std::vector<IndexPair> EndToEndInTime(std::span<const double> seconds, double de
   return pairs;
 }
 
-/// All pairs whose rotation is between two angles, rad.
-std::vector<IndexPair> ByDirectAngle(std::span<const geometry::StampedPose> poses, double lowest, double highest) {
+/// All pairs whose relative rotation is within [min_angle, max_angle] (rad).
+std::vector<IndexPair> PairsByAngle(std::span<const geometry::StampedPose> poses, double min_angle, double max_angle) {
   std::vector<IndexPair> pairs;
   // |q1 . q2| is the cosine of half the angle.
-  const double largest_cosine = lowest > 0.0 ? std::cos(0.5 * lowest) : 2.0;
-  const double least_cosine = std::cos(0.5 * std::min(highest, std::numbers::pi));
+  const double max_cosine = min_angle > 0.0 ? std::cos(0.5 * min_angle) : 2.0;
+  const double min_cosine = std::cos(0.5 * std::min(max_angle, std::numbers::pi));
   for (std::size_t i = 0; i < poses.size(); ++i) {
     for (std::size_t j = i + 1; j < poses.size(); ++j) {
       const double cosine = std::abs(poses[i].T_world_cam.rotation().dot(poses[j].T_world_cam.rotation()));
-      if (cosine >= least_cosine && cosine <= largest_cosine) pairs.push_back(Pair(i, j));
+      if (cosine >= min_cosine && cosine <= max_cosine) pairs.push_back(Pair(i, j));
     }
-    if (pairs.size() > kMostPairs) {
-      throw Error(ErrorKind::kUsage, "more than " + std::to_string(kMostPairs) +
-                                         " pairs of poses are turned by about this angle; choose --rpe-pairs "
-                                         "consecutive, a smaller evaluation.rpe_tolerance or a shorter interval");
+    if (pairs.size() > kMaxPairs) {
+      throw Error(ErrorKind::kUsage,
+                  fmt::format("more than {} pairs of poses differ by about this angle; choose --rpe-pairs consecutive, "
+                              "a smaller evaluation.rpe_tolerance or a shorter interval",
+                              kMaxPairs));
     }
   }
   return pairs;
@@ -157,36 +133,21 @@ std::vector<IndexPair> ByDirectAngle(std::span<const geometry::StampedPose> pose
 
 }  // namespace
 
-const char* UnitName(DeltaUnit unit) {
-  return std::ranges::find(kUnits, unit, [](const auto& u) { return u.second; })->first;
-}
-
-std::vector<Delta> ParseDeltas(const std::string& text) {
-  std::vector<Delta> deltas;
-  std::istringstream list(text);
-  for (std::string name; std::getline(list, name, ',');) {
-    const Delta delta = ParseDelta(name);
-    if (std::ranges::find(deltas, name, &Delta::name) == deltas.end()) deltas.push_back(delta);
-  }
-  if (deltas.empty()) throw Error(ErrorKind::kUsage, "no distance between poses given; for example 1f,1s,10m");
-  return deltas;
-}
-
 std::vector<IndexPair> SelectPairs(std::span<const geometry::StampedPose> poses, const Delta& delta,
                                    const std::string& selection, double tolerance) {
   const bool is_angle = delta.unit == DeltaUnit::kDegrees || delta.unit == DeltaUnit::kRadians;
   const double value = delta.unit == DeltaUnit::kDegrees ? delta.value * std::numbers::pi / 180.0 : delta.value;
   const double allowed = tolerance * value;
-  if (selection == "all" && is_angle) return ByDirectAngle(poses, value - allowed, value + allowed);
-  const auto steps = Steps(poses, delta.unit);
+  if (selection == "all" && is_angle) return PairsByAngle(poses, value - allowed, value + allowed);
+  const auto steps = StepLengths(poses, delta.unit);
   const bool is_consecutive = selection == "consecutive";
   if (is_consecutive && delta.unit != DeltaUnit::kSeconds) {
-    return EndToEnd(steps, value, delta.unit != DeltaUnit::kMetres);
+    return ConsecutivePairs(steps, value, delta.unit != DeltaUnit::kMetres);
   }
-  const auto course = Accumulate(steps);
-  if (is_consecutive) return EndToEndInTime(course, value, tolerance);
-  if (selection == "closest") return Closest(course, value);
-  return EveryPose(course, value, delta.unit == DeltaUnit::kFrames ? 0.0 : allowed);
+  const auto cumulative = Accumulate(steps);
+  if (is_consecutive) return ConsecutivePairsInTime(cumulative, value, tolerance);
+  if (selection == "closest") return ClosestPairs(cumulative, value);
+  return PairsFromEveryPose(cumulative, value, delta.unit == DeltaUnit::kFrames ? 0.0 : allowed);
 }
 
 }  // namespace evo::evaluation

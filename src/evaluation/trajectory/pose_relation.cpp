@@ -1,46 +1,8 @@
 #include "evo/evaluation/pose_relation.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 namespace evo::evaluation {
-
-namespace {
-
-double Frobenius(double angle) { return 2.0 * std::numbers::sqrt2 * std::sin(0.5 * angle); }
-
-std::vector<double> Column(const PoseDifferences& differences, PoseRelation relation) {
-  std::vector<double> column;
-  switch (relation) {
-    case PoseRelation::kTranslation:
-      return differences.translation;
-    case PoseRelation::kRotationRad:
-      return differences.rotation;
-    case PoseRelation::kPointDistance:
-      return differences.point_distance;
-    case PoseRelation::kRotationDeg:
-      for (const double angle : differences.rotation) column.push_back(angle * 180.0 / std::numbers::pi);
-      return column;
-    case PoseRelation::kRotationFrobenius:
-      for (const double angle : differences.rotation) column.push_back(Frobenius(angle));
-      return column;
-    case PoseRelation::kFull:
-      for (std::size_t i = 0; i < differences.rotation.size(); ++i) {
-        column.push_back(std::hypot(differences.translation[i], Frobenius(differences.rotation[i])));
-      }
-      return column;
-    case PoseRelation::kPointDistanceRatio:
-      for (std::size_t i = 0; i < differences.point_distance.size(); ++i) {
-        const double distance = differences.true_distance[i];
-        if (distance > 0.0) column.push_back(100.0 * differences.point_distance[i] / distance);
-      }
-      return column;
-  }
-  return column;
-}
-
-}  // namespace
 
 const char* QuantityName(PoseRelation relation) {
   switch (relation) {
@@ -79,25 +41,6 @@ const char* UnitName(PoseRelation relation) {
 
 const Statistics& Find(std::span<const RelationStatistics> statistics, PoseRelation relation) {
   return std::ranges::find(statistics, relation, &RelationStatistics::relation)->statistics;
-}
-
-PoseDifferences AbsoluteDifferences(std::span<const PosePair> pairs) {
-  PoseDifferences differences;
-  for (const auto& pair : pairs) {
-    const geometry::SE3& truth = pair.T_world_cam_truth;
-    const geometry::SE3& estimate = pair.T_world_cam_estimate;
-    differences.translation.push_back((estimate.translation() - truth.translation()).norm());
-    differences.rotation.push_back(geometry::so3::Log(truth.rotation().conjugate() * estimate.rotation()).norm());
-  }
-  return differences;
-}
-
-std::vector<RelationStatistics> Summarize(const PoseDifferences& differences, std::span<const PoseRelation> relations) {
-  std::vector<RelationStatistics> statistics;
-  for (const auto relation : relations) {
-    statistics.push_back({relation, ComputeStatistics(Column(differences, relation))});
-  }
-  return statistics;
 }
 
 }  // namespace evo::evaluation

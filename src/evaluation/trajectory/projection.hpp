@@ -6,9 +6,8 @@
 
 namespace evo::evaluation {
 
-/// Lays a pose into a plane of its world: "xy", "xz" or "yz"; "none" leaves it as it is. The coordinate across the
-/// plane becomes 0. Of the rotation, written Rz(c) Ry(b) Rx(a), only the factor about the plane's normal is kept, as
-/// evo does.
+/// Projects a pose onto a plane of its world frame, as evo does: "xy", "xz" or "yz"; "none" returns the pose. The
+/// coordinate along the normal becomes 0, and of the rotation Rz(c) Ry(b) Rx(a) only the factor about the normal stays.
 geometry::SE3 Project(const geometry::SE3& T_world_cam, const std::string& plane);
 
 }  // namespace evo::evaluation

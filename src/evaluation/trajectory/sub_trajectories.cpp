@@ -1,4 +1,4 @@
-#include "evo/evaluation/sub_trajectories.hpp"
+#include "evaluation/trajectory/sub_trajectories.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,9 +11,9 @@ namespace evo::evaluation {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-constexpr double kLengthTolerance = 0.2;
+constexpr double kLengthTolerance = 0.2;  // of rpg_trajectory_evaluation
 
-/// Finds the ends of sub-trajectories of one length. Starts go forward, so the ends do: each search continues the last.
+/// Finds the ends of sub-trajectories of one length. Starts move forward, so each search continues from the last end.
 class EndSearch {
  public:
   EndSearch(std::span<const double> distance, double length) : distance_(distance), length_(length) {}
@@ -22,10 +22,10 @@ class EndSearch {
     const double target = distance_[first] + length_;
     while (beyond_ < distance_.size() && distance_[beyond_] < target) ++beyond_;
     const bool reached = beyond_ < distance_.size();
-    const double before = distance_[beyond_ - 1];  // the start itself is always before the target
+    const double before = distance_[beyond_ - 1];  // the start itself lies before the target
     std::size_t end = beyond_;
     if (!reached || target - before <= distance_[beyond_] - target) {
-      // Where the truth stood still, the first of its poses there.
+      // Of the poses at which the truth stands still, the first.
       end = static_cast<std::size_t>(std::ranges::lower_bound(distance_, before) - distance_.begin());
     }
     if (std::abs(distance_[end] - target) >= kLengthTolerance * length_) return std::nullopt;
@@ -43,8 +43,8 @@ struct YawAndGravity {
   double gravity = 0.0;
 };
 
-/// R = Rz(yaw) Ry(pitch) Rx(roll), rad.
-YawAndGravity Split(const Eigen::Matrix3d& R) {
+/// Angles of R = Rz(yaw) Ry(pitch) Rx(roll) (rad).
+YawAndGravity SplitYawAndGravity(const Eigen::Matrix3d& R) {
   const double pitch = std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0)));
   const double roll = std::atan2(R(2, 1), R(2, 2));
   return {std::abs(std::atan2(R(1, 0), R(0, 0))), std::hypot(pitch, roll)};
@@ -61,20 +61,21 @@ Statistics Scale(Statistics statistics, double factor) {
 
 }  // namespace
 
-std::vector<SubTrajectoryErrors> ComputeSubTrajectoryErrors(const MatchedPath& path, std::span<const double> lengths_m,
+std::vector<SubTrajectoryErrors> ComputeSubTrajectoryErrors(const MatchedTrajectory& trajectory,
+                                                            std::span<const double> lengths_m,
                                                             const Eigen::Vector3d& up) {
   const auto to_z = Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ());
   std::vector<SubTrajectoryErrors> results;
   for (const double length : lengths_m) {
-    EndSearch ends(path.distance, length);
+    EndSearch ends(trajectory.distance, length);
     std::vector<double> translations, rotations, yaws, gravities;
-    for (std::size_t first = 0; first < path.size(); ++first) {
+    for (std::size_t first = 0; first < trajectory.size(); ++first) {
       const auto last = ends.Find(first);
       if (!last) continue;
-      const Eigen::Quaterniond rotation = path.RotationError(first, *last);
-      const auto [yaw, gravity] = Split((to_z * rotation * to_z.conjugate()).toRotationMatrix());
-      translations.push_back(path.TranslationError(first, *last));
-      rotations.push_back(kDegrees * Angle(rotation));
+      const Eigen::Quaterniond rotation = trajectory.RotationError(first, *last);
+      const auto [yaw, gravity] = SplitYawAndGravity((to_z * rotation * to_z.conjugate()).toRotationMatrix());
+      translations.push_back(trajectory.TranslationError(first, *last));
+      rotations.push_back(kDegrees * RotationAngle(rotation));
       yaws.push_back(kDegrees * yaw);
       gravities.push_back(kDegrees * gravity);
     }

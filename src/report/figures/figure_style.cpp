@@ -1,45 +1,55 @@
 #include "report/figures/figure_style.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <sstream>
 
 namespace evo::report {
 
 namespace {
 
-constexpr std::size_t kMostPoints = 5000;
+constexpr std::size_t kMaxPoints = 5000;  // more slow down viewers and add nothing visible
+constexpr double kMaxTicSteps = 5.0;
 
 constexpr const char* kGapColor = "#e6e6e6";
-constexpr const char* kRestartStyle = "linewidth 2 dashtype (2,4) linecolor '#707070'";
+constexpr const char* kReinitialisationStyle = "linewidth 2 dashtype (2,4) linecolor '#707070'";
+
+constexpr const char* kStyle =
+    "set border 3 linecolor '#404040'\n"
+    "set tics out nomirror textcolor '#202020'\n"
+    "set grid linecolor '#d8d8d8' linetype 1 linewidth 0.5\n";
 
 }  // namespace
 
-std::string Print(const char* format, double value) {
-  char buffer[400];
-  std::snprintf(buffer, sizeof buffer, format, value);
-  return buffer;
-}
+std::string FormatNumber(double value) { return fmt::format("{:.10g}", value == 0.0 ? 0.0 : value); }
 
-std::string Number(double value) { return Print("%.10g", value == 0.0 ? 0.0 : value); }
-
-void AppendRow(std::ostream& data, std::initializer_list<double> values) {
-  const char* separator = "";
+std::string DataRow(std::initializer_list<double> values) {
+  std::string row;
   for (const double value : values) {
-    data << separator << Number(value);
-    separator = " ";
+    if (!row.empty()) row += ' ';
+    row += FormatNumber(value);
   }
-  data << '\n';
+  return row + '\n';
 }
 
-std::ostream& operator<<(std::ostream& out, const Curve& curve) {
-  out << curve.data;
-  if (curve.rows > kMostPoints) out << " every " << (curve.rows + kMostPoints - 1) / kMostPoints;
-  return out << " using " << curve.columns << " with lines " << curve.style
-             << (curve.title.empty() ? " notitle" : " title '" + curve.title + "'") << ", \\\n  " << curve.data
-             << " every ::0::0 using " << curve.columns << " with points pointtype 7 pointsize 0.45 " << curve.style
-             << " notitle";
+std::string BeginFigure(const std::string& title, int height) {
+  // `set title` would place the title below the legend.
+  const auto from_top = [&](double px) { return FormatNumber(1.0 - px / height); };
+  return fmt::format(
+      "{}set label 3 '{}' at screen 0.5, screen {} center font ',16'\n"
+      "set key at screen 0.5, screen {} center top horizontal maxrows 1 samplen 2.5\n"
+      "set tmargin at screen {}\n",
+      kStyle, title, from_top(18.0), from_top(34.0), from_top(70.0));
+}
+
+std::string PlotElements(const Curve& curve) {
+  const std::string every = curve.rows > kMaxPoints ? fmt::format(" every {}", (curve.rows - 1) / kMaxPoints + 1) : "";
+  const std::string title = curve.title.empty() ? "notitle" : "title '" + curve.title + "'";
+  return fmt::format(
+      "{0}{1} using {2} with lines {3} {4}, \\\n"
+      "  {0} every ::0::0 using {2} with points pointtype 7 pointsize 0.45 {3} notitle",
+      curve.data, every, curve.columns, curve.style, title);
 }
 
 void Range::Add(double value) {
@@ -55,88 +65,92 @@ void Range::WidenTo(double wanted) {
 }
 
 void Range::Pad() {
+  constexpr double kMinLength = 1e-6;          // a micrometre
+  constexpr double kMinRelativeLength = 1e-6;  // more than FormatNumber rounds off large values
   WidenTo(0.0);
   const double size = std::max(std::abs(low), std::abs(high));
-  WidenTo(std::max({1.1 * length(), 1e-6, 1e-6 * size}));  // a micrometre, and more than Number leaves of large values
+  WidenTo(std::max({1.1 * length(), kMinLength, kMinRelativeLength * size}));
 }
 
-std::ostream& operator<<(std::ostream& out, const Range& range) {
-  return out << '[' << Number(range.low) << ':' << Number(range.high) << ']';
+std::string FormatRange(const Range& range) {
+  return fmt::format("[{}:{}]", FormatNumber(range.low), FormatNumber(range.high));
 }
 
 double TicStep(const Range& range) {
-  constexpr double kMostSteps = 5.0;
-  const double decade = std::pow(10.0, std::floor(std::log10(range.length() / kMostSteps)));
+  const double decade = std::pow(10.0, std::floor(std::log10(range.length() / kMaxTicSteps)));
   for (const double step : {decade, 2.0 * decade, 5.0 * decade}) {
-    if (range.length() <= kMostSteps * step) return step;
+    if (range.length() <= kMaxTicSteps * step) return step;
   }
   return 10.0 * decade;
 }
 
-std::string BeginPanels() {
-  return std::string(kStyle) +
-         "set multiplot\n"
-         "set key at screen 0.5, screen 0.99 center top width -2 font ',12'\n"
-         "set lmargin at screen 0.12\n"
-         "set rmargin at screen 0.97\n";
+std::string BeginPanels(const std::string& title) {
+  return fmt::format(
+      "{}set multiplot\n"
+      "set label 3 '{}' at screen 0.5, screen 0.975 center font ',16'\n"
+      "set key at screen 0.5, screen 0.945 center top horizontal maxrows 1 samplen 2.5 width -2 font ',12'\n"
+      "set lmargin at screen 0.12\n"
+      "set rmargin at screen 0.97\n",
+      kStyle, title);
 }
 
 std::string Panel(double top, double bottom, const Range& range, const std::string& label, bool last) {
-  std::ostringstream script;
-  script << "set tmargin at screen " << Number(1.0 - top) << "\n"
-         << "set bmargin at screen " << Number(1.0 - bottom) << "\n"
-         << "set yrange " << range << "\n"
-         << "set ytics " << Number(TicStep(range))
-         << "\n"
-         // Unlike ylabel this stays in the picture however wide the numbers are, and lines up with the other panels.
-         << "set label 1 '" << label << "' at screen 0.015, graph 0.5 center rotate\n"
-         << (last ? "set format x '% h'\n" : "set format x ''\n");
-  return script.str();
+  // Unlike ylabel, label 1 stays in the picture however wide the numbers are, and it lines up with the other panels.
+  return fmt::format(
+      "set tmargin at screen {}\n"
+      "set bmargin at screen {}\n"
+      "set yrange {}\n"
+      "set ytics {}\n"
+      "set label 1 '{}' at screen 0.015, graph 0.5 center rotate\n"
+      "set format x '{}'\n",
+      FormatNumber(1.0 - top), FormatNumber(1.0 - bottom), FormatRange(range), FormatNumber(TicStep(range)), label,
+      last ? "% h" : "");
 }
 
 Interruptions FindInterruptions(const evaluation::Evaluation& evaluation, const evaluation::AlignedEvaluation& result,
-                                std::span<const TimeNs> restarts, double evaluation::PoseError::*axis) {
+                                std::span<const TimeNs> reinitialisations, double evaluation::PoseError::*axis) {
   Interruptions found;
   const auto& errors = result.errors;
   for (std::size_t i = 1; i < errors.size(); ++i) {
-    if (errors[i].stamp - errors[i - 1].stamp > evaluation.longest_gap) {
+    if (errors[i].stamp - errors[i - 1].stamp > evaluation.max_gap) {
       found.gaps.push_back({errors[i - 1].*axis, errors[i].*axis});
     }
   }
   if (axis == &evaluation::PoseError::seconds) {
-    const double longest = ToSeconds(evaluation.longest_gap);
+    const double max_gap = ToSeconds(evaluation.max_gap);
     const double end = ToSeconds(evaluation.to - evaluation.from);
-    if (errors.front().seconds > longest) found.gaps.push_back({0.0, errors.front().seconds});
-    if (end - errors.back().seconds > longest) found.gaps.push_back({errors.back().seconds, end});
+    if (errors.front().seconds > max_gap) found.gaps.push_back({0.0, errors.front().seconds});
+    if (end - errors.back().seconds > max_gap) found.gaps.push_back({errors.back().seconds, end});
   }
-  for (const TimeNs restart : restarts) {
-    const auto error = std::ranges::lower_bound(errors, restart, {}, &evaluation::PoseError::stamp);
-    if (error != errors.end()) found.restarts.push_back((*error).*axis);
+  for (const TimeNs stamp : reinitialisations) {
+    const auto error = std::ranges::lower_bound(errors, stamp, {}, &evaluation::PoseError::stamp);
+    if (error != errors.end()) found.reinitialisations.push_back((*error).*axis);
   }
   return found;
 }
 
 std::string DrawInterruptions(const Interruptions& interruptions) {
-  std::ostringstream script;
+  std::string script;
   for (const auto& gap : interruptions.gaps) {
-    script << "set object rectangle from " << Number(gap.low) << ", graph 0 to " << Number(gap.high)
-           << ", graph 1 behind fillcolor '" << kGapColor << "' fillstyle solid noborder\n";
+    script += fmt::format(
+        "set object rectangle from {}, graph 0 to {}, graph 1 behind fillcolor '{}' fillstyle solid noborder\n",
+        FormatNumber(gap.low), FormatNumber(gap.high), kGapColor);
   }
-  for (const double restart : interruptions.restarts) {
-    script << "set arrow from " << Number(restart) << ", graph 0 to " << Number(restart) << ", graph 1 nohead back "
-           << kRestartStyle << "\n";
+  for (const double place : interruptions.reinitialisations) {
+    script += fmt::format("set arrow from {0}, graph 0 to {0}, graph 1 nohead back {1}\n", FormatNumber(place),
+                          kReinitialisationStyle);
   }
-  return script.str();
+  return script;
 }
 
-std::string ExplainInterruptions(const Interruptions& interruptions) {
+std::string InterruptionLegend(const Interruptions& interruptions) {
   std::string elements;
   if (!interruptions.gaps.empty()) {
     elements +=
-        std::string(", \\\n  NaN with boxes fillstyle solid noborder linecolor '") + kGapColor + "' title 'no pose'";
+        fmt::format(", \\\n  NaN with boxes fillstyle solid noborder linecolor '{}' title 'no pose'", kGapColor);
   }
-  if (!interruptions.restarts.empty()) {
-    elements += std::string(", \\\n  NaN with lines ") + kRestartStyle + " title 'started anew'";
+  if (!interruptions.reinitialisations.empty()) {
+    elements += fmt::format(", \\\n  NaN with lines {} title 'reinitialised'", kReinitialisationStyle);
   }
   return elements;
 }
@@ -147,6 +161,8 @@ Range TimeRange(const evaluation::Evaluation& evaluation) {
   return time;
 }
 
-std::string TimeLabel(const evaluation::Evaluation& evaluation) { return evaluation.has_stamps ? "time (s)" : "frame"; }
+std::string TimeLabel(const evaluation::Evaluation& evaluation) {
+  return evaluation.has_stamps ? "time (s)" : "frame (number)";
+}
 
 }  // namespace evo::report

@@ -1,6 +1,7 @@
 #include "evo/report/gnuplot.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <signal.h>
 #include <spawn.h>
 #include <spdlog/spdlog.h>
@@ -10,7 +11,6 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
-#include <sstream>
 #include <string>
 
 #include "evo/core/error.hpp"
@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 constexpr double kPdfWidthInches = 7.0;
 
-/// A folder beside the results in which gnuplot works, removed with all it holds.
+/// A temporary folder beside the results in which gnuplot works.
 class WorkingFolder {
  public:
   explicit WorkingFolder(const fs::path& parent) : path_(parent / ("plot.part" + std::to_string(::getpid()))) {
@@ -47,21 +47,21 @@ class WorkingFolder {
 };
 
 std::string Script(const std::string& name, const Figure& figure) {
-  std::ostringstream script;
-  script << "# 'gnuplot " << name << ".gp' in this folder draws " << name << ".svg and " << name << ".pdf again.\n"
-         << "do for [ending in 'svg pdf'] {\n"
-         << "reset\n"
-         << "if (ending eq 'svg') {\n"
-         << "set terminal svg noenhanced size " << figure.width << "," << figure.height
-         << " font 'DejaVu Sans,14' background '#ffffff'\n"
-         << "} else {\n"
-         << "set terminal pdfcairo noenhanced size " << kPdfWidthInches << ","
-         << kPdfWidthInches * figure.height / figure.width << " font 'DejaVu Sans,13' linewidth 1.2\n"
-         << "}\n"
-         << "set output '" << name << ".'.ending\n"
-         << figure.script << "unset output\n"
-         << "}\n";
-  return script.str();
+  return fmt::format(
+      "# 'gnuplot {0}.gp' in this folder draws {0}.svg and {0}.pdf again.\n"
+      "do for [ending in 'svg pdf'] {{\n"
+      "reset\n"
+      "if (ending eq 'svg') {{\n"
+      "set terminal svg noenhanced size {1},{2} font 'DejaVu Sans,14' background '#ffffff'\n"
+      "}} else {{\n"
+      "set terminal pdfcairo noenhanced size {3},{4:.6g} font 'DejaVu Sans,13' linewidth 1.2\n"
+      "}}\n"
+      "set output '{0}.'.ending\n"
+      "{5}"
+      "unset output\n"
+      "}}\n",
+      name, figure.width, figure.height, kPdfWidthInches, kPdfWidthInches * figure.height / figure.width,
+      figure.script);
 }
 
 std::string ReadText(const fs::path& path) {
@@ -69,7 +69,7 @@ std::string ReadText(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// What went wrong, or nothing. gnuplot's own words go to `log` in `folder`.
+/// Returns an error message, empty on success. The output of gnuplot goes to `log` in `folder`.
 std::string RunGnuplot(const fs::path& folder, const std::string& script, const std::string& log) {
   posix_spawn_file_actions_t actions;
   posix_spawnattr_t attributes;
@@ -79,7 +79,7 @@ std::string RunGnuplot(const fs::path& folder, const std::string& script, const 
   ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
   ::posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-  sigset_t none;  // signals that this process handles elsewhere must reach the child
+  sigset_t none;  // the child must receive the signals that this process blocks
   ::sigemptyset(&none);
   ::posix_spawnattr_setsigmask(&attributes, &none);
   ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
@@ -95,14 +95,14 @@ std::string RunGnuplot(const fs::path& folder, const std::string& script, const 
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return "";
-  std::string words = ReadText(folder / log);
-  for (char& c : words) {
+  std::string message = ReadText(folder / log);
+  for (char& c : message) {
     if (c == '\n') c = ' ';
   }
-  return "gnuplot failed: " + words;
+  return "gnuplot failed: " + message;
 }
 
-/// Cairo stamps a PDF with the time of day; equal runs shall give equal bytes.
+/// Cairo writes the time of day into a PDF; equal runs must give equal bytes.
 void ResetCreationDate(std::string* pdf) {
   const std::string key = "/CreationDate (D:";
   const auto found = pdf->find(key);
@@ -125,7 +125,8 @@ void Gnuplot::Draw(const std::string& name, const Figure& figure) {
   const std::string failure = RunGnuplot(work.path(), name + ".gp", "log");
   if (!failure.empty()) {
     available_ = false;
-    spdlog::warn("no plots in {}: {}; 'gnuplot {}.gp' there draws them later", folder_.string(), failure, name);
+    spdlog::warn("no plots in {}: {}; 'gnuplot {}.gp' in that folder draws them later", folder_.string(), failure,
+                 name);
     return;
   }
   WriteText(folder_ / (name + ".svg"), ReadText(work.path() / (name + ".svg")));

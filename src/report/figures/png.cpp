@@ -15,7 +15,7 @@ void Write(const std::filesystem::path& path, int width, int height, png_uint_32
   image.width = static_cast<png_uint_32>(width);
   image.height = static_cast<png_uint_32>(height);
   image.format = format;
-  image.flags = PNG_IMAGE_FLAG_FAST;  // for event frames a quarter larger, in a fraction of the time
+  image.flags = PNG_IMAGE_FLAG_FAST;  // event frames get a quarter larger in a fraction of the time
   PendingPath pending(path);
   if (!png_image_write_to_file(&image, pending.temporary().c_str(), 0, pixels, 0, nullptr)) {
     throw Error(ErrorKind::kOutput,

@@ -1,5 +1,6 @@
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <sstream>
 
 #include "evo/report/figures.hpp"
 #include "report/figures/figure_style.hpp"
@@ -8,43 +9,40 @@ namespace evo::report {
 
 namespace {
 
-constexpr const char* kMeanStyle = "lines linewidth 3 dashtype (8,4) linecolor";
+constexpr const char* kMeanStyle = "linewidth 3 dashtype (8,4) linecolor";
 
-/// A line across the figure at the mean, told in the legend by the `plot` element that MeanTitle makes.
-std::string MeanTitle(const std::string& text) {
-  return std::string("NaN with ") + kMeanStyle + " '" + kVermilion + "' title '" + text + "'";
-}
-
-/// Boxes of the bins with the mean; `quantity` is the label below them.
+/// A histogram with a line at its mean; `unit` is that of the lifetimes.
 template <typename Bin>
 Figure HistogramFigure(const std::string& name, const evaluation::LifetimeStatistics& statistics,
-                       std::span<const Bin> histogram, const evaluation::LifetimeMoments& moments,
+                       std::span<const Bin> histogram, const evaluation::LifetimeSummary& summary,
                        const std::string& unit) {
-  std::ostringstream data;
-  data << "# lifetime from (" << unit << "), to below (" << unit << "), tracks\n";
-  std::int64_t most = 1;
+  std::string data = fmt::format("# lifetime from ({0}), to below ({0}), tracks\n", unit);
+  std::int64_t max_tracks = 1;
   for (const auto& bin : histogram) {
-    AppendRow(data, {static_cast<double>(bin.low), static_cast<double>(bin.high), static_cast<double>(bin.tracks)});
-    most = std::max(most, bin.tracks);
+    data += DataRow({static_cast<double>(bin.low), static_cast<double>(bin.high), static_cast<double>(bin.tracks)});
+    max_tracks = std::max(max_tracks, bin.tracks);
   }
-  if (histogram.empty()) data << "0 1 0\n";  // gnuplot refuses a file without data
+  if (histogram.empty()) data += "0 1 0\n";  // gnuplot refuses a file without data
 
-  const std::string mean = Number(moments.mean);
-  const std::string top = Number(1.05 * static_cast<double>(most));
-  std::ostringstream script;
-  script << kStyle << "set xrange [0:" << Number(histogram.empty() ? 1.0 : histogram.back().high) << "]\n"
-         << "set yrange [0:" << top << "]\n"
-         << "set grid noxtics\n"
-         << "set xlabel 'lifetime (" << unit << ")'\n"
-         << "set ylabel 'tracks'\n"
-         << "set style fill solid 0.8 border linecolor '" << kBlue << "'\n"
-         << "set arrow from " << mean << ",0 to " << mean << "," << top
-         << " nohead linewidth 3 dashtype (8,4) linecolor '" << kVermilion << "' front\n"
-         << "plot '" << name << ".dat' using (0.5 * ($1 + $2)):3:($2 - $1) with boxes linecolor '" << kSkyBlue
-         << "' title '" << statistics.tracks << " tracks of " << evaluation::kFewestFrames << " frames or more', \\\n  "
-         << MeanTitle("mean " + Print("%.3f", moments.mean) + ", std " + Print("%.3f", moments.standard_deviation))
-         << "\n";
-  return {data.str(), script.str()};
+  const std::string top = FormatNumber(1.05 * static_cast<double>(max_tracks));
+  std::string script = BeginFigure("Lifetime of feature tracks");
+  script += fmt::format(
+      "set xrange [0:{}]\n"
+      "set yrange [0:{}]\n"
+      "set grid noxtics\n"
+      "set xlabel 'lifetime ({})'\n"
+      "set ylabel 'tracks (count)'\n"
+      "set style fill solid 0.8 border linecolor '{}'\n"
+      "set arrow from {},0 to {},{} nohead {} '{}' front\n",
+      FormatNumber(histogram.empty() ? 1.0 : histogram.back().high), top, unit, kBlue, FormatNumber(summary.mean),
+      FormatNumber(summary.mean), top, kMeanStyle, kVermilion);
+  script += fmt::format(
+      "plot '{}.dat' using (0.5 * ($1 + $2)):3:($2 - $1) with boxes linecolor '{}' title '{} tracks of at least {} "
+      "frames', \\\n"
+      "  NaN with lines {} '{}' title 'mean {:.3f}, std {:.3f} {}'\n",
+      name, kSkyBlue, statistics.tracks, evaluation::kMinLifetimeFrames, kMeanStyle, kVermilion, summary.mean,
+      summary.standard_deviation, unit);
+  return {data, script};
 }
 
 }  // namespace
@@ -60,32 +58,31 @@ Figure LifetimeSecondsFigure(const std::string& name, const evaluation::Lifetime
 }
 
 Figure LiveFeaturesFigure(const std::string& name, std::span<const LiveFeatures> frames) {
-  std::ostringstream data;
-  data << "# seconds since the first frame, live features\n";
+  std::string data = "# seconds since the first frame, live features\n";
   double mean = 0.0;
   Range time{0.0, 1e-3};
   Range features{0.0, 1.0};
   for (const auto& frame : frames) {
     const double seconds = ToSeconds(frame.t - frames.front().t);
     const auto live = static_cast<double>(frame.features);
-    AppendRow(data, {seconds, live});
+    data += DataRow({seconds, live});
     mean += live / static_cast<double>(frames.size());
     time.Add(seconds);
     features.Add(live);
   }
   features.high *= 1.05;
 
-  std::ostringstream script;
-  script << kStyle << "set xrange " << time << "\n"
-         << "set yrange " << features << "\n"
-         << "set xlabel 'time (s)'\n"
-         << "set ylabel 'live features'\n"
-         << "plot " << Number(mean) << " with " << kMeanStyle << " '" << kVermilion << "' title 'mean "
-         << Print("%.1f", mean) << "', \\\n  "
-         << Curve{"'" + name + ".dat'", frames.size(), "1:2", std::string("linewidth 2 linecolor '") + kBlue + "'",
-                  "features seen in the event frame"}
-         << "\n";
-  return {data.str(), script.str()};
+  std::string script = BeginFigure("Live features");
+  script += fmt::format(
+      "set xrange {}\n"
+      "set yrange {}\n"
+      "set xlabel 'time since the first event frame (s)'\n"
+      "set ylabel 'live features (count)'\n"
+      "plot {} with lines {} '{}' title 'mean {:.1f}', \\\n  {}\n",
+      FormatRange(time), FormatRange(features), FormatNumber(mean), kMeanStyle, kVermilion, mean,
+      PlotElements({"'" + name + ".dat'", frames.size(), "1:2", fmt::format("linewidth 2 linecolor '{}'", kBlue),
+                    "features in the event frame"}));
+  return {data, script};
 }
 
 }  // namespace evo::report

@@ -1,7 +1,8 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 #include "evo/report/figures.hpp"
 #include "report/figures/figure_style.hpp"
@@ -10,7 +11,7 @@ namespace evo::report {
 
 namespace {
 
-/// The two axes of the world that span the ground as seen from above: right x away = towards the viewer.
+/// Indices of the world axes of a top view; right x away points to the viewer.
 struct MapAxes {
   int right = 0;
   int away = 1;
@@ -24,43 +25,40 @@ MapAxes ChooseMapAxes(const Eigen::Vector3d& up) {
   return up[axis] > 0.0 ? MapAxes{next, after} : MapAxes{after, next};
 }
 
-/// One index of a data file: seconds, x, y, z; an empty line breaks the curve at a gap.
-void AppendTrack(std::ostream& data, const geometry::Trajectory& track, TimeNs start, TimeNs longest_gap) {
-  for (std::size_t i = 0; i < track.size(); ++i) {
-    if (i > 0 && track[i].t - track[i - 1].t > longest_gap) data << '\n';
-    const Eigen::Vector3d& p = track[i].T_world_cam.translation();
-    AppendRow(data, {ToSeconds(track[i].t - start), p.x(), p.y(), p.z()});
+/// One index of a data file with seconds, x, y, z; an empty line interrupts the curve at a gap.
+std::string TrajectoryRows(const geometry::Trajectory& trajectory, TimeNs start, TimeNs max_gap) {
+  std::string data;
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    if (i > 0 && trajectory[i].t - trajectory[i - 1].t > max_gap) data += '\n';
+    const Eigen::Vector3d& p = trajectory[i].T_world_cam.translation();
+    data += DataRow({ToSeconds(trajectory[i].t - start), p.x(), p.y(), p.z()});
   }
+  return data;
 }
 
-std::string TrackData(const evaluation::Evaluation& evaluation, const evaluation::AlignedEvaluation& result) {
-  std::ostringstream data;
-  data << "# seconds, x, y, z (m); first part: ground truth, second: estimate (" << result.alignment.name << ")\n";
-  AppendTrack(data, evaluation.truth, evaluation.from, std::numeric_limits<TimeNs>::max());
-  data << "\n\n";
-  AppendTrack(data, result.aligned, evaluation.from, evaluation.longest_gap);
-  return data.str();
+std::string TrajectoryData(const evaluation::Evaluation& evaluation, const evaluation::AlignedEvaluation& result) {
+  return fmt::format("# seconds, x, y, z (m); first index: ground truth, second: estimate ({} alignment)\n",
+                     result.alignment.name) +
+         TrajectoryRows(evaluation.truth, evaluation.from, std::numeric_limits<TimeNs>::max()) + "\n\n" +
+         TrajectoryRows(result.aligned, evaluation.from, evaluation.max_gap);
 }
 
-/// The stretch of one axis of the world that both trajectories fill.
+/// Range of both trajectories along one world axis.
 Range AxisRange(const evaluation::Evaluation& evaluation, const evaluation::AlignedEvaluation& result, int axis) {
   Range range;
-  for (const geometry::Trajectory* track : {&evaluation.truth, &result.aligned}) {
-    for (const auto& pose : *track) range.Add(pose.T_world_cam.translation()[axis]);
+  for (const geometry::Trajectory* trajectory : {&evaluation.truth, &result.aligned}) {
+    for (const auto& pose : *trajectory) range.Add(pose.T_world_cam.translation()[axis]);
   }
   return range;
 }
 
-/// `plot` of truth and estimate, by their columns in the data file.
-std::string PlotTracks(const evaluation::Evaluation& evaluation, const evaluation::AlignedEvaluation& result,
-                       const std::string& columns, bool with_titles) {
-  const auto title = [&](const std::string& text) { return with_titles ? text : std::string(); };
-  std::ostringstream plot;
-  plot << "plot " << Curve{"data index 0", evaluation.truth.size(), columns, kTruthStyle, title("ground truth")}
-       << ", \\\n  "
-       << Curve{"data index 1", result.aligned.size(), columns, kEstimateStyle,
-                title("estimate (" + result.alignment.name + ")")};
-  return plot.str();
+/// A `plot` command of truth and estimate for the given columns of the data file.
+std::string PlotTrajectories(const evaluation::Evaluation& evaluation, const evaluation::AlignedEvaluation& result,
+                             const std::string& columns, bool with_titles) {
+  return fmt::format(
+      "plot {}, \\\n  {}",
+      PlotElements({"data index 0", evaluation.truth.size(), columns, kTruthStyle, with_titles ? "ground truth" : ""}),
+      PlotElements({"data index 1", result.aligned.size(), columns, kEstimateStyle, with_titles ? "estimate" : ""}));
 }
 
 }  // namespace
@@ -70,7 +68,7 @@ Figure TrajectoryFigure(const std::string& name, const evaluation::Evaluation& e
   const MapAxes axes = ChooseMapAxes(evaluation.up);
   Range right = AxisRange(evaluation, result, axes.right);
   Range away = AxisRange(evaluation, result, axes.away);
-  // A straight road is long and thin: leave it room to be seen.
+  // A straight road is long and thin; the map gets at least 0.4 of its length across.
   const double length = std::max(right.length(), away.length());
   for (Range* range : {&right, &away}) {
     range->WidenTo(std::max(0.4 * length, 1e-3));
@@ -78,40 +76,46 @@ Figure TrajectoryFigure(const std::string& name, const evaluation::Evaluation& e
   }
 
   Figure figure;
-  figure.data = TrackData(evaluation, result);
+  figure.data = TrajectoryData(evaluation, result);
   figure.height = static_cast<int>(std::lround(std::clamp(760.0 * away.length() / right.length(), 340.0, 900.0))) + 140;
   const char* const names = "xyz";
-  const std::string columns = std::to_string(axes.right + 2) + ":" + std::to_string(axes.away + 2);
-  std::ostringstream script;
-  script << kStyle << "set size ratio -1\n"
-         << "set xrange " << right << "\n"
-         << "set yrange " << away << "\n"
-         << "set xlabel '" << names[axes.right] << " (m)'\n"
-         << "set ylabel '" << names[axes.away] << " (m)'\n"
-         << "data = '" << name << ".dat'\n"
-         << PlotTracks(evaluation, result, columns, true) << ", \\\n  data index 1 every ::0:0:0:0 using " << columns
-         << " with points pointtype 7 pointsize 1.1 linecolor '#000000' title 'start'\n";
-  figure.script = script.str();
+  const std::string columns = fmt::format("{}:{}", axes.right + 2, axes.away + 2);
+  figure.script = BeginFigure(fmt::format("Trajectory, top view ({} alignment)", result.alignment.name), figure.height);
+  figure.script += fmt::format(
+      "set size ratio -1\n"
+      "set xrange {}\n"
+      "set yrange {}\n"
+      "set xlabel '{} (m)'\n"
+      "set ylabel '{} (m)'\n"
+      "data = '{}.dat'\n"
+      "{}, \\\n"
+      "  data index 1 every ::0:0:0:0 using {} with points pointtype 7 pointsize 1.1 linecolor '#000000' title "
+      "'start'\n",
+      FormatRange(right), FormatRange(away), names[axes.right], names[axes.away], name,
+      PlotTrajectories(evaluation, result, columns, true), columns);
   return figure;
 }
 
 Figure AxesFigure(const std::string& name, const evaluation::Evaluation& evaluation,
-                  const evaluation::AlignedEvaluation& result, std::span<const TimeNs> restarts) {
-  const auto interruptions = FindInterruptions(evaluation, result, restarts, &evaluation::PoseError::seconds);
-  std::ostringstream script;
-  script << BeginPanels() << "set xrange " << TimeRange(evaluation) << "\n"
-         << DrawInterruptions(interruptions) << "data = '" << name << ".dat'\n";
+                  const evaluation::AlignedEvaluation& result, std::span<const TimeNs> reinitialisations) {
+  const auto interruptions = FindInterruptions(evaluation, result, reinitialisations, &evaluation::PoseError::seconds);
+  std::string script = BeginPanels(fmt::format("Position over time ({} alignment)", result.alignment.name));
+  script += fmt::format("set xrange {}\n{}data = '{}.dat'\n", FormatRange(TimeRange(evaluation)),
+                        DrawInterruptions(interruptions), name);
   for (int axis = 0; axis < 3; ++axis) {
+    const bool first = axis == 0;
+    const bool last = axis == 2;
     Range meters = AxisRange(evaluation, result, axis);
     meters.Pad();
-    const double top = 0.08 + 0.275 * axis;
-    script << Panel(top, top + 0.25, meters, std::string(1, "xyz"[axis]) + " (m)", axis == 2);
-    if (axis == 2) script << "set xlabel '" << TimeLabel(evaluation) << "'\n";
-    script << PlotTracks(evaluation, result, "1:" + std::to_string(axis + 2), axis == 0)
-           << (axis == 0 ? ExplainInterruptions(interruptions) : "") << "\n";
+    const double top = 0.11 + 0.27 * axis;
+    script += Panel(top, top + 0.24, meters, fmt::format("{} (m)", "xyz"[axis]), last);
+    if (last) script += fmt::format("set xlabel '{}'\n", TimeLabel(evaluation));
+    script += PlotTrajectories(evaluation, result, fmt::format("1:{}", axis + 2), first);
+    script += (first ? InterruptionLegend(interruptions) : "") + "\n";
+    if (first) script += "unset label 3\n";
   }
-  script << "unset multiplot\n";
-  return {TrackData(evaluation, result), script.str(), 900, 700};
+  script += "unset multiplot\n";
+  return {TrajectoryData(evaluation, result), script, 900, 700};
 }
 
 }  // namespace evo::report

@@ -7,13 +7,13 @@
 
 namespace evo::report {
 
-/// `text` as HTML shows it, in an element or in a quoted attribute.
+/// Escapes text for an HTML element or a quoted attribute.
 std::string HtmlEscape(std::string_view text);
 
-/// "data:TYPE;base64,...": `bytes` as an address that needs no file.
+/// "data:TYPE;base64,...", a URI that embeds `bytes`.
 std::string DataUri(const std::string& type, const std::string& bytes);
 
-/// `page` with each {{name}} replaced by its value. Values are not searched for further names.
-std::string FillIn(std::string_view page, const std::vector<std::pair<std::string, std::string>>& values);
+/// Replaces each {{name}} of a template by its value; values are not expanded further.
+std::string ExpandTemplate(std::string_view page, const std::vector<std::pair<std::string, std::string>>& values);
 
 }  // namespace evo::report

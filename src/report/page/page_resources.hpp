@@ -2,7 +2,7 @@
 
 namespace evo::report {
 
-// The files in src/report/page, built into the program. The page's {{name}} are places to fill in.
+// The files of src/report/page, embedded by the build. The template's {{name}} are for ExpandTemplate.
 extern const char* const kPageTemplate;
 extern const char* const kPageStyle;
 extern const char* const kPageScript;

@@ -1,8 +1,11 @@
 #include "evo/report/run_page.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <sstream>
+#include <string_view>
 
 #include "evo/report/run_table.hpp"
 #include "report/page/html.hpp"
@@ -18,7 +21,7 @@ std::string Plural(std::size_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
-/// "" where the table has no such column.
+/// "" without such a column.
 std::string Cell(const CsvTable& table, std::size_t row, const std::string& column) {
   const auto found = table.Find(column);
   return found ? table.rows[row][*found] : "";
@@ -30,10 +33,12 @@ std::string RunLink(const std::vector<RunFolder>& runs, const std::string& name)
   return RunLink(*run, static_cast<std::size_t>(run - runs.begin()) + 1);
 }
 
-/// Opens a table in a container of its own that scrolls, reachable by keyboard.
+/// Opens a table in a container that scrolls, also by keyboard.
 std::string OpenTable(const std::string& label) {
-  return "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"" + label +
-         "\">\n<table class=\"sortable\">\n<thead><tr>";
+  return fmt::format(
+      "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"{}\">\n<table "
+      "class=\"sortable\">\n<thead><tr>",
+      label);
 }
 
 const char* const kCloseTable = "</tbody>\n</table>\n</div>\n";
@@ -47,26 +52,27 @@ std::string FailureList(const std::vector<RunFolder>& runs) {
     items += "<li>" + RunLink(runs, run.name) + ": " + HtmlEscape(run.failure) + "</li>\n";
   }
   if (failed == 0) return "";
-  return "<section class=\"failures\">\n<h2>" + Plural(failed, "run") + " failed</h2>\n<ul>\n" + items +
-         "</ul>\n</section>\n";
+  return fmt::format("<section class=\"failures\">\n<h2>{} failed</h2>\n<ul>\n{}</ul>\n</section>\n",
+                     Plural(failed, "run"), items);
 }
 
 std::string MeasureCells(const CsvTable& table, std::size_t row) {
   std::string cells = "<td>" + HtmlEscape(Cell(table, row, "alignment")) + "</td>";
   for (const auto& measure : RunMeasures()) {
     const std::string cell = Cell(table, row, measure.column);
-    cells += "<td class=\"number\" data-value=\"" + HtmlEscape(cell) + "\">" + FormatMeasure(measure, cell) + "</td>";
+    cells +=
+        fmt::format(R"(<td class="number" data-value="{}">{}</td>)", HtmlEscape(cell), FormatMeasure(measure, cell));
   }
   return cells;
 }
 
-/// What a failed run has in place of its numbers; it sorts as if all of them were empty.
+/// The error of a failed run in place of its numbers; it sorts like empty cells.
 std::string FailureCell(const CsvTable& table, std::size_t row) {
-  return "<td class=\"wrap failed\" data-value=\"\" colspan=\"" + std::to_string(1 + RunMeasures().size()) + "\">" +
-         HtmlEscape(Cell(table, row, "failure")) + "</td>";
+  return fmt::format(R"(<td class="wrap failed" data-value="" colspan="{}">{}</td>)", 1 + RunMeasures().size(),
+                     HtmlEscape(Cell(table, row, "failure")));
 }
 
-/// A row for each run and alignment with the measures that people compare first.
+/// A row for each run and alignment with the main measures.
 std::string ShortTable(const std::vector<RunFolder>& runs, const CsvTable& table) {
   std::ostringstream out;
   out << OpenTable("Errors, lifetimes and speed") << "<th scope=\"col\">Run</th><th scope=\"col\">Status</th>"
@@ -87,7 +93,7 @@ std::string ShortTable(const std::vector<RunFolder>& runs, const CsvTable& table
   return out.str();
 }
 
-/// Everything that runs.csv holds.
+/// All columns of runs.csv.
 std::string WholeTable(const std::vector<RunFolder>& runs, const CsvTable& table) {
   std::ostringstream out;
   out << "<details class=\"columns\">\n<summary>All " << table.columns.size() << " columns</summary>\n"
@@ -123,7 +129,7 @@ std::string ParameterTable(const std::vector<RunFolder>& runs) {
   return out.str();
 }
 
-/// A word of a command line as a shell takes it.
+/// A word of a command line, quoted for a shell where needed.
 std::string ShellWord(const std::string& word) {
   const bool plain = !word.empty() && std::ranges::all_of(word, [](unsigned char c) {
     return std::isalnum(c) || std::string_view("_-+=./:,@%").find(static_cast<char>(c)) != std::string_view::npos;
@@ -135,7 +141,7 @@ std::string ShellWord(const std::string& word) {
   return quoted;
 }
 
-std::string Origin(const Manifest& manifest) {
+std::string CommandAndInputs(const Manifest& manifest) {
   std::ostringstream out;
   std::string command;
   for (const auto& word : manifest.command_line) command.append(command.empty() ? "" : " ").append(ShellWord(word));
@@ -157,7 +163,7 @@ std::string Warnings(const RunFolder& run) {
   for (const auto& warning : run.warnings) text += HtmlEscape(warning) + "\n";
   if (run.manifest) {
     for (const TimeNs stamp : run.manifest->rebootstraps)
-      text += "odometry started anew at " + FormatTime(stamp) + " s\n";
+      text += fmt::format("odometry reinitialised at {} s\n", FormatTime(stamp));
   }
   return text.empty() ? "" : "<h3>Warnings</h3>\n<pre>" + text + "</pre>\n";
 }
@@ -172,12 +178,12 @@ std::string RunDetails(const RunFolder& run, std::size_t number, const std::stri
     out << "<h3>Parameters that differ between the runs</h3>\n<pre>" << HtmlEscape(parameters) << "</pre>\n";
   }
   out << Warnings(run);
-  if (run.manifest) out << Origin(*run.manifest);
+  if (run.manifest) out << CommandAndInputs(*run.manifest);
   out << "</div>\n</details>\n";
   return out.str();
 }
 
-/// Of the first row of a run.
+/// The differing parameters of a run.
 std::string Parameters(const CsvTable& table, const std::string& run) {
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     if (Cell(table, i, "run") == run) return Cell(table, i, "parameters");
@@ -194,15 +200,18 @@ std::string RunsPage(const std::string& title, const std::vector<RunFolder>& run
   body << "<h1>" << HtmlEscape(title) << "</h1>\n<p class=\"lead\">" << Plural(runs.size(), "run") << ", "
        << (failed == 0 ? "none" : std::to_string(failed)) << " failed</p>\n"
        << FailureList(runs) << "<h2>Results</h2>\n"
-       << "<p class=\"note\">Errors are means of absolute values after the alignment, in m and in % of the path; "
-          "&ldquo;largest&rdquo; is the maximum. Lifetime is the mean over the tracks.</p>\n"
-       << ShortTable(runs, table) << WholeTable(runs, table) << Thumbnails(runs) << "<h2>Configuration</h2>\n"
+       << "<p class=\"note\">Position errors are mean absolute errors after alignment, in m and in % of the path "
+          "length; "
+          "&ldquo;max&rdquo; is the largest one. APE RMSE is the root mean square absolute pose error (translation). "
+          "Lifetime is the mean over the feature tracks.</p>\n"
+       << ShortTable(runs, table) << WholeTable(runs, table) << Thumbnails(runs) << "<h2>Parameters</h2>\n"
        << ParameterTable(runs) << "<h2>Runs</h2>\n";
   for (std::size_t i = 0; i < runs.size(); ++i) {
     body << RunDetails(runs[i], i + 1, Parameters(table, runs[i].name));
   }
-  return FillIn(kPageTemplate,
-                {{"title", HtmlEscape(title)}, {"style", kPageStyle}, {"script", kPageScript}, {"body", body.str()}});
+  return ExpandTemplate(
+      kPageTemplate,
+      {{"title", HtmlEscape(title)}, {"style", kPageStyle}, {"script", kPageScript}, {"body", body.str()}});
 }
 
 }  // namespace evo::report

@@ -1,5 +1,7 @@
 #include "report/page/run_pictures.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -14,19 +16,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kLargestPicture = 2'000'000;  // bytes
+constexpr std::uintmax_t kMaxPictureBytes = 2'000'000;  // a page of 50 runs still opens
 constexpr std::array<const char*, 2> kThumbnails{"trajectory.svg", "errors.svg"};
 
-std::string Megabytes(std::uintmax_t bytes) {
-  char buffer[64];
-  std::snprintf(buffer, sizeof buffer, "%.1f MB", 1e-6 * static_cast<double>(bytes));
-  return buffer;
-}
-
-std::uintmax_t Bytes(const fs::path& path) {
+std::uintmax_t FileSize(const fs::path& path) {
   std::error_code failure;
   const std::uintmax_t bytes = fs::file_size(path, failure);
-  return failure ? 0 : bytes;  // ReadTextFile says it better
+  return failure ? 0 : bytes;  // ReadTextFile throws the Error
 }
 
 struct Size {
@@ -34,8 +30,8 @@ struct Size {
   int height = 600;
 };
 
-/// Of an SVG; another one only leaves margins.
-Size ReadSize(const std::string& svg) {
+/// Size of an SVG; a default one if it has no view box.
+Size ReadSvgSize(const std::string& svg) {
   Size size;
   const auto box = svg.substr(0, 2000).find("viewBox=");
   const bool found = box != std::string::npos &&
@@ -45,44 +41,44 @@ Size ReadSize(const std::string& svg) {
 
 bool IsThumbnail(const fs::path& plot) {
   return std::ranges::find(kThumbnails, plot.filename().string()) != kThumbnails.end() &&
-         Bytes(plot) <= kLargestPicture;
+         FileSize(plot) <= kMaxPictureBytes;
 }
 
 std::string PictureId(const fs::path& plot, std::size_t number) {
   return "picture-" + std::to_string(number) + "-" + plot.stem().string();
 }
 
-/// An inline SVG of that size, named `label`, around `content`.
-std::string Frame(const Size& size, const std::string& label, const std::string& content) {
-  return "<svg viewBox=\"0 0 " + std::to_string(size.width) + " " + std::to_string(size.height) +
-         "\" role=\"img\" aria-label=\"" + HtmlEscape(label) + "\">" + content + "</svg>";
+/// An inline SVG around `content`.
+std::string InlineSvg(const Size& size, const std::string& label, const std::string& content) {
+  return fmt::format(R"(<svg viewBox="0 0 {} {}" role="img" aria-label="{}">{}</svg>)", size.width, size.height,
+                     HtmlEscape(label), content);
 }
 
 std::string Thumbnail(const RunFolder& run, const fs::path& plot, std::size_t number) {
   const std::string svg = ReadTextFile(plot);
-  const Size size = ReadSize(svg);
-  return Frame(size, run.name + ": " + plot.stem().string(),
-               "<image id=\"" + PictureId(plot, number) + "\" width=\"" + std::to_string(size.width) + "\" height=\"" +
-                   std::to_string(size.height) + "\" href=\"" + DataUri("image/svg+xml", svg) + "\"/>");
+  const Size size = ReadSvgSize(svg);
+  return InlineSvg(size, run.name + ": " + plot.stem().string(),
+                   fmt::format(R"(<image id="{}" width="{}" height="{}" href="{}"/>)", PictureId(plot, number),
+                               size.width, size.height, DataUri("image/svg+xml", svg)));
 }
 
 std::string Picture(const fs::path& path, const std::string& type, std::size_t number) {
   const std::string name = path.filename().string();
-  if (const std::uintmax_t bytes = Bytes(path); bytes > kLargestPicture) {
-    return "<figure><figcaption>" + HtmlEscape(name) + " (" + Megabytes(bytes) +
-           ") is too large for this page.</figcaption></figure>\n";
+  if (const std::uintmax_t bytes = FileSize(path); bytes > kMaxPictureBytes) {
+    return fmt::format("<figure><figcaption>{} ({:.1f} MB) is too large for this page.</figcaption></figure>\n",
+                       HtmlEscape(name), 1e-6 * static_cast<double>(bytes));
   }
   const std::string content = ReadTextFile(path);
-  const std::string picture = IsThumbnail(path)
-                                  ? Frame(ReadSize(content), name, "<use href=\"#" + PictureId(path, number) + "\"/>")
-                                  : "<img alt=\"" + HtmlEscape(name) + "\" src=\"" + DataUri(type, content) + "\">";
+  const std::string picture =
+      IsThumbnail(path) ? InlineSvg(ReadSvgSize(content), name, "<use href=\"#" + PictureId(path, number) + "\"/>")
+                        : "<img alt=\"" + HtmlEscape(name) + "\" src=\"" + DataUri(type, content) + "\">";
   return "<figure>" + picture + "<figcaption>" + HtmlEscape(name) + "</figcaption></figure>\n";
 }
 
 }  // namespace
 
 std::string RunLink(const RunFolder& run, std::size_t number) {
-  return "<a href=\"#run-" + std::to_string(number) + "\">" + HtmlEscape(run.name) + "</a>";
+  return fmt::format(R"(<a href="#run-{}">{}</a>)", number, HtmlEscape(run.name));
 }
 
 std::string Thumbnails(const std::vector<RunFolder>& runs) {
@@ -97,9 +93,9 @@ std::string Thumbnails(const std::vector<RunFolder>& runs) {
     figures += "<figure><figcaption>" + RunLink(runs[i], i + 1) + "</figcaption>\n" + plots + "</figure>\n";
   }
   if (figures.empty()) return "";
-  return "<h2>At a glance</h2>\n<p class=\"note\">Trajectory and errors over time under the first alignment of each "
-         "run; "
-         "every plot has its own axes.</p>\n<div class=\"thumbnails\">\n" +
+  return "<h2>Trajectories and errors</h2>\n<p class=\"note\">Top view of the trajectory and position error over time, "
+         "for "
+         "the first alignment of each run. Every plot has its own scale.</p>\n<div class=\"thumbnails\">\n" +
          figures + "</div>\n";
 }
 

@@ -8,16 +8,16 @@
 
 namespace evo::report {
 
-// The pictures on the page of many runs. Those of more than 2 MB are named instead of shown. `number` is that of a run
-// among all, from 1. Both throw Error (kInput) if a picture cannot be read.
+// Pictures on the page of runs. Pictures of more than 2 MB are named instead of shown. `number` is the number of a run,
+// from 1. Functions throw Error (kInput) if a picture cannot be read.
 
-/// "#run-NUMBER" with the run's name.
+/// A link to the details of a run, "#run-NUMBER".
 std::string RunLink(const RunFolder& run, std::size_t number);
 
-/// Trajectory and errors of each run, small and side by side; empty if there are none.
+/// Trajectories and errors of all runs, small and side by side; empty if there are none.
 std::string Thumbnails(const std::vector<RunFolder>& runs);
 
-/// All plots and sheets of a run. What Thumbnails holds is not embedded again but referred to.
+/// All plots and event frames of a run. Pictures of Thumbnails are referred to, not embedded again.
 std::string Pictures(const RunFolder& run, std::size_t number);
 
 }  // namespace evo::report

@@ -1,5 +1,7 @@
 #include "evo/report/csv.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
 #include <string_view>
@@ -12,7 +14,7 @@ namespace evo::report {
 
 namespace {
 
-/// Walks through the text of a CSV file, cell by cell.
+/// Parses the text of a CSV file row by row.
 class CsvParser {
  public:
   CsvParser(std::string path, std::string_view text) : path_(std::move(path)), text_(text) {}
@@ -34,7 +36,7 @@ class CsvParser {
 
   Error Failure(const std::string& what) const { return Failure(line_, what); }
   Error Failure(std::size_t line, const std::string& what) const {
-    return Error(ErrorKind::kInput, path_ + ":" + std::to_string(line) + ": " + what);
+    return Error(ErrorKind::kInput, fmt::format("{}:{}: {}", path_, line, what));
   }
 
  private:
@@ -98,8 +100,8 @@ CsvTable ReadCsv(const std::filesystem::path& path) {
     table.lines.push_back(parser.line());
     table.rows.push_back(parser.Row());
     if (table.rows.back().size() != table.columns.size()) {
-      throw parser.Failure(table.lines.back(), std::to_string(table.rows.back().size()) + " cells under a header of " +
-                                                   std::to_string(table.columns.size()));
+      throw parser.Failure(table.lines.back(), fmt::format("{} cells under a header of {}", table.rows.back().size(),
+                                                           table.columns.size()));
     }
   }
   return table;

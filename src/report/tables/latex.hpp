@@ -4,7 +4,7 @@
 
 namespace evo::report {
 
-/// `text` as LaTeX prints it: its special characters (# $ % & _ { } ~ ^ \ < > |) written as commands.
+/// Escapes the special characters of LaTeX (# $ % & _ { } ~ ^ \ < > |).
 std::string LatexEscape(const std::string& text);
 
 }  // namespace evo::report

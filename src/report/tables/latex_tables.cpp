@@ -1,8 +1,9 @@
 #include "evo/report/latex_tables.hpp"
 
+#include <fmt/format.h>
+
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <limits>
 
@@ -16,10 +17,8 @@ constexpr int kDecimals = 4;
 
 std::string Cell(double value, int decimals = kDecimals) {
   if (!std::isfinite(value)) return "--";
-  char buffer[400];  // the longest double in fixed point has 309 digits before the point
   const double half_digit = 0.5 * std::pow(10.0, -decimals);
-  std::snprintf(buffer, sizeof buffer, "$%.*f$", decimals, std::abs(value) < half_digit ? 0.0 : value);
-  return buffer;
+  return fmt::format("${:.{}f}$", std::abs(value) < half_digit ? 0.0 : value, decimals);
 }
 
 std::string Number(double value, int decimals) {
@@ -27,7 +26,7 @@ std::string Number(double value, int decimals) {
   return cell.starts_with('$') ? cell.substr(1, cell.size() - 2) : cell;
 }
 
-/// A label holds no character that TeX treats in a special way.
+/// A label without special characters of TeX.
 std::string Label(std::string name) {
   for (char& c : name) {
     if (!std::isalnum(static_cast<unsigned char>(c))) c = '-';
@@ -70,10 +69,11 @@ std::string AlignmentBlock(const evaluation::Evaluation& evaluation, const evalu
 
 std::string LifetimeTable(const std::string& sequence, const evaluation::LifetimeStatistics& statistics) {
   const double rate = 1.0 / statistics.frame_interval_s;  // infinite without an interval
-  const std::string caption = "Lifetime of the feature tracks of " + LatexEscape(sequence) + ": " +
-                              std::to_string(statistics.tracks) + " tracks in " + std::to_string(statistics.frames) +
-                              " event frames at " + Number(rate, 1) + "\\,Hz; tracks of fewer than " +
-                              std::to_string(evaluation::kFewestFrames) + " frames are left out.";
+  const std::string caption = fmt::format(
+      "Lifetime of the feature tracks of {}: {} tracks in {} event frames at {}\\,Hz; tracks of fewer than {} frames "
+      "are "
+      "left out.",
+      LatexEscape(sequence), statistics.tracks, statistics.frames, Number(rate, 1), evaluation::kMinLifetimeFrames);
   const auto& frames = statistics.in_frames;
   const auto& seconds = statistics.in_seconds;
   return Begin(caption, "lifetime-" + Label(sequence), "lr") + "    Item & Value \\\\\n    \\midrule\n" +
@@ -83,10 +83,10 @@ std::string LifetimeTable(const std::string& sequence, const evaluation::Lifetim
 }
 
 std::string ErrorTable(const std::string& sequence, const evaluation::Evaluation& evaluation) {
-  const std::string caption = "Position error of the estimate for " + LatexEscape(sequence) + ": a path of " +
-                              Number(evaluation.path_m, 1) + "\\,m in " +
-                              Number(ToSeconds(evaluation.to - evaluation.from), 1) + "\\,s, coverage " +
-                              Number(100.0 * evaluation.coverage, 1) + "\\,\\%.";
+  const std::string caption =
+      fmt::format("Position error of the estimate for {}: a path of {}\\,m in {}\\,s, coverage {}\\,\\%.",
+                  LatexEscape(sequence), Number(evaluation.path_m, 1),
+                  Number(ToSeconds(evaluation.to - evaluation.from), 1), Number(100.0 * evaluation.coverage, 1));
   std::string table =
       Begin(caption, "errors-" + Label(sequence), "lrrr") + "    Item & Longitudinal & Lateral & Planar \\\\\n";
   for (const auto& result : evaluation.alignments) table += AlignmentBlock(evaluation, result);

@@ -1,22 +1,18 @@
-#include "evo/report/metric_rows.hpp"
-
-#include <limits>
-
+#include "evo/report/evaluation_tables.hpp"
+#include "report/tables/metric_row.hpp"
 #include "report/tables/segment_rows.hpp"
 
 namespace evo::report {
 
-TableRow MetricRow(const std::string& sequence, const std::string& alignment, const std::string& metric,
-                   const std::string& quantity, const std::string& unit, double delta, const std::string& delta_unit,
-                   const std::string& pairs, const evaluation::Statistics& statistics) {
-  return {{"sequence", sequence},
-          {"alignment", alignment},
-          {"metric", metric},
-          {"quantity", quantity},
-          {"unit", unit},
-          {"delta", delta},
-          {"delta_unit", delta_unit},
-          {"pairs", pairs},
+TableRow MetricRow(const MetricKey& key, const evaluation::Statistics& statistics) {
+  return {{"sequence", std::string(key.sequence)},
+          {"alignment", std::string(key.alignment)},
+          {"metric", std::string(key.metric)},
+          {"quantity", std::string(key.quantity)},
+          {"unit", std::string(key.unit)},
+          {"delta", key.delta},
+          {"delta_unit", std::string(key.delta_unit)},
+          {"pairs", std::string(key.pairs)},
           {"count", statistics.count},
           {"rmse", statistics.rmse},
           {"mean", statistics.mean},
@@ -28,19 +24,23 @@ TableRow MetricRow(const std::string& sequence, const std::string& alignment, co
 }
 
 std::vector<TableRow> MetricRows(const std::string& sequence, const evaluation::Evaluation& evaluation) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   std::vector<TableRow> rows;
   for (const auto& result : evaluation.alignments) {
-    const std::string& name = result.alignment.name;
-    for (const auto& [relation, statistics] : result.ape) {
-      rows.push_back(MetricRow(sequence, name, "ape", evaluation::QuantityName(relation),
-                               evaluation::UnitName(relation), kNone, "", "", statistics));
-    }
+    const auto append = [&](MetricKey key, const evaluation::RelationStatistics& entry) {
+      key.sequence = sequence;
+      key.alignment = result.alignment.name;
+      key.quantity = evaluation::QuantityName(entry.relation);
+      key.unit = evaluation::UnitName(entry.relation);
+      rows.push_back(MetricRow(key, entry.statistics));
+    };
+    for (const auto& entry : result.ape) append({.metric = "ape"}, entry);
     for (const auto& rpe : result.rpe) {
-      for (const auto& [relation, statistics] : rpe.relations) {
-        rows.push_back(MetricRow(sequence, name, "rpe", evaluation::QuantityName(relation),
-                                 evaluation::UnitName(relation), rpe.delta.value, evaluation::UnitName(rpe.delta.unit),
-                                 rpe.pairs, statistics));
+      for (const auto& entry : rpe.relations) {
+        append({.metric = "rpe",
+                .delta = rpe.delta.value,
+                .delta_unit = evaluation::UnitName(rpe.delta.unit),
+                .pairs = rpe.pairs},
+               entry);
       }
     }
   }

@@ -1,4 +1,4 @@
-#include <sstream>
+#include <fmt/format.h>
 
 #include "evo/report/run_table.hpp"
 #include "report/tables/latex.hpp"
@@ -8,7 +8,7 @@ namespace evo::report {
 
 namespace {
 
-/// "" where the table has no such column.
+/// "" without such a column.
 std::string Cell(const CsvTable& table, std::size_t row, const std::string& column) {
   const auto found = table.Find(column);
   return found ? table.rows[row][*found] : "";
@@ -26,12 +26,12 @@ std::string Header(const std::string& alignment) {
   return text + " \\\\\n\\midrule\n";
 }
 
-/// One cell under all measures; paths in the text may break at their slashes.
-std::string Remark(const std::string& text) {
+/// A text in place of all measures; its lines may break at slashes.
+std::string TextCell(const std::string& text) {
   std::string breakable;
   for (const char c : LatexEscape(text)) breakable += c == '/' ? "/\\allowbreak{}" : std::string(1, c);
-  return " & \\multicolumn{" + std::to_string(RunMeasures().size()) + "}{p{0.6\\linewidth}}{\\raggedright " +
-         breakable + "}";
+  return fmt::format(" & \\multicolumn{{{}}}{{p{{0.6\\linewidth}}}}{{\\raggedright {}}}", RunMeasures().size(),
+                     breakable);
 }
 
 std::string Numbers(const CsvTable& runs, std::size_t row) {
@@ -46,27 +46,25 @@ std::string Numbers(const CsvTable& runs, std::size_t row) {
 }  // namespace
 
 std::string RunsLatex(const CsvTable& runs, const std::string& alignment) {
-  std::ostringstream out;
-  out << Header(alignment);
+  std::string text = Header(alignment);
   for (std::size_t begin = 0; begin < runs.rows.size();) {
     const std::string run = Cell(runs, begin, "run");
     std::size_t end = begin;
     std::size_t chosen = runs.rows.size();
     for (; end < runs.rows.size() && Cell(runs, end, "run") == run; ++end) {
       const std::string name = Cell(runs, end, "alignment");
-      if (name == alignment || name.empty()) chosen = end;  // a run that was not evaluated has only its lifetimes
+      if (name == alignment || name.empty()) chosen = end;  // a run without evaluation has lifetimes only
     }
-    out << LatexEscape(run);
+    text += LatexEscape(run);
     if (Cell(runs, begin, "status") == "failed") {
-      out << Remark("failed: " + Cell(runs, begin, "failure"));
+      text += TextCell("failed: " + Cell(runs, begin, "failure"));
     } else {
-      out << (chosen < end ? Numbers(runs, chosen) : Remark("no alignment " + alignment));
+      text += chosen < end ? Numbers(runs, chosen) : TextCell("no alignment " + alignment);
     }
-    out << " \\\\\n";
+    text += " \\\\\n";
     begin = end;
   }
-  out << "\\bottomrule\n\\end{tabular}\n";
-  return out.str();
+  return text + "\\bottomrule\n\\end{tabular}\n";
 }
 
 }  // namespace evo::report

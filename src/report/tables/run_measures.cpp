@@ -1,8 +1,9 @@
 #include "report/tables/run_measures.hpp"
 
+#include <fmt/format.h>
+
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 
 namespace evo::report {
 
@@ -13,7 +14,7 @@ const std::vector<RunMeasure>& RunMeasures() {
                                                 {"mean_abs_lateral_m", "Lateral", "m", 1.0, 4},
                                                 {"mean_planar_m", "Planar", "m", 1.0, 4},
                                                 {"mean_planar_percent", "Planar", "%", 1.0, 3},
-                                                {"max_planar_percent", "Largest planar", "%", 1.0, 3},
+                                                {"max_planar_percent", "Max planar", "%", 1.0, 3},
                                                 {"ape_rmse_m", "APE RMSE", "m", 1.0, 4},
                                                 {"lifetime_mean_frames", "Lifetime", "frames", 1.0, 1},
                                                 {"speed_x_real_time", "Speed", "x real time", 1.0, 2}};
@@ -30,10 +31,7 @@ std::optional<double> ParseMeasure(const std::string& text) {
 
 std::string FormatMeasure(const RunMeasure& measure, const std::string& cell) {
   const auto value = ParseMeasure(cell);
-  if (!value) return "";
-  char buffer[400];  // the longest double in fixed point has 309 digits before the point
-  std::snprintf(buffer, sizeof buffer, "%.*f", measure.decimals, measure.factor * *value);
-  return buffer;
+  return value ? fmt::format("{:.{}f}", measure.factor * *value, measure.decimals) : "";
 }
 
 }  // namespace evo::report

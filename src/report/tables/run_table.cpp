@@ -1,7 +1,8 @@
 #include "evo/report/run_table.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cstdio>
 
 #include "evo/core/error.hpp"
 
@@ -11,13 +12,9 @@ namespace {
 
 using Cells = std::vector<std::pair<std::string, std::string>>;
 
-std::string Number(double value) {
-  char buffer[64];
-  std::snprintf(buffer, sizeof buffer, "%.9g", value);
-  return buffer;
-}
+std::string Number(double value) { return fmt::format("{:.9g}", value); }
 
-/// The parameters in which a run differs from the others.
+/// Parameters of a run that differ between the runs, as NAME=VALUE.
 std::string DifferingParameters(const std::vector<ParameterDifference>& differences, std::size_t run) {
   std::string text;
   for (const auto& [name, values] : differences) {
@@ -26,7 +23,7 @@ std::string DifferingParameters(const std::vector<ParameterDifference>& differen
   return text;
 }
 
-/// What the manifest tells about the cost of a run.
+/// Cells about the cost of a run.
 Cells CostCells(const Manifest& manifest) {
   Cells cells;
   if (manifest.recorded_s) cells.emplace_back("recorded_s", Number(*manifest.recorded_s));
@@ -38,7 +35,7 @@ Cells CostCells(const Manifest& manifest) {
   return cells;
 }
 
-/// Collects the columns of all rows as they come.
+/// Collects rows with different columns.
 class TableBuilder {
  public:
   void DeclareColumns(const std::vector<std::string>& names) {
@@ -140,8 +137,8 @@ std::string ChooseAlignment(const std::vector<RunFolder>& runs, const std::strin
     if (std::ranges::any_of(offered, has(wanted))) return wanted;
     std::string known;
     for (const auto& name : offered.empty() ? std::vector<std::string>{} : offered.front()) known += " " + name;
-    throw Error(ErrorKind::kUsage, "--alignment: no run has '" + wanted + "'" +
-                                       (known.empty() ? "; none was evaluated" : "; the first one has" + known));
+    throw Error(ErrorKind::kUsage, fmt::format("--alignment: no run has '{}'; {}", wanted,
+                                               known.empty() ? "none was evaluated" : "the first one has" + known));
   }
   if (offered.empty()) return "";
   for (const auto& name : offered.front()) {

@@ -1,34 +1,41 @@
 #include "report/tables/segment_rows.hpp"
 
-#include <limits>
-
-#include "evo/report/metric_rows.hpp"
+#include "report/tables/metric_row.hpp"
 
 namespace evo::report {
 
 namespace {
 
-void AppendKitti(std::vector<TableRow>* rows, const std::string& sequence, const std::string& alignment,
-                 const evaluation::KittiSegments& kitti) {
+void AppendKitti(std::vector<TableRow>* rows, MetricKey key, const evaluation::KittiSegments& kitti) {
+  if (kitti.lengths.empty()) return;
+  key.metric = "kitti";
+  key.delta_unit = "m";
   const std::string starts = "every " + std::to_string(kitti.step);
-  const auto append = [&](double length_m, const evaluation::Statistics& translation,
-                          const evaluation::Statistics& rotation) {
-    rows->push_back(MetricRow(sequence, alignment, "kitti", "translation", "%", length_m, "m", starts, translation));
-    rows->push_back(MetricRow(sequence, alignment, "kitti", "rotation", "deg/m", length_m, "m", starts, rotation));
+  key.pairs = starts;
+  const auto append = [&](const char* quantity, const char* unit, const evaluation::Statistics& statistics) {
+    key.quantity = quantity;
+    key.unit = unit;
+    rows->push_back(MetricRow(key, statistics));
   };
   for (const auto& length : kitti.lengths) {
-    append(length.length_m, length.translation_percent, length.rotation_deg_per_m);
+    key.delta = length.length_m;
+    append("translation", "%", length.translation_percent);
+    append("rotation", "deg/m", length.rotation_deg_per_m);
   }
-  if (kitti.lengths.empty()) return;
-  append(std::numeric_limits<double>::quiet_NaN(), kitti.translation_percent, kitti.rotation_deg_per_m);
+  key.delta = MetricKey().delta;
+  append("translation", "%", kitti.translation_percent);
+  append("rotation", "deg/m", kitti.rotation_deg_per_m);
 }
 
-void AppendSubTrajectory(std::vector<TableRow>* rows, const std::string& sequence, const std::string& alignment,
-                         const evaluation::SubTrajectoryErrors& errors) {
-  const auto append = [&](const std::string& quantity, const std::string& unit,
-                          const evaluation::Statistics& statistics) {
-    rows->push_back(
-        MetricRow(sequence, alignment, "subtrajectory", quantity, unit, errors.length_m, "m", "all", statistics));
+void AppendSubTrajectory(std::vector<TableRow>* rows, MetricKey key, const evaluation::SubTrajectoryErrors& errors) {
+  key.metric = "subtrajectory";
+  key.delta = errors.length_m;
+  key.delta_unit = "m";
+  key.pairs = "all";
+  const auto append = [&](const char* quantity, const char* unit, const evaluation::Statistics& statistics) {
+    key.quantity = quantity;
+    key.unit = unit;
+    rows->push_back(MetricRow(key, statistics));
   };
   append("translation", "m", errors.translation_m);
   append("translation", "%", errors.translation_percent);
@@ -43,9 +50,11 @@ void AppendSubTrajectory(std::vector<TableRow>* rows, const std::string& sequenc
 std::vector<TableRow> SegmentMetricRows(const std::string& sequence, const evaluation::Evaluation& evaluation) {
   std::vector<TableRow> rows;
   for (const auto& result : evaluation.alignments) {
-    const std::string& name = result.alignment.name;
-    AppendKitti(&rows, sequence, name, result.segments.kitti);
-    for (const auto& errors : result.segments.sub_trajectories) AppendSubTrajectory(&rows, sequence, name, errors);
+    MetricKey key;
+    key.sequence = sequence;
+    key.alignment = result.alignment.name;
+    AppendKitti(&rows, key, result.segments.kitti);
+    for (const auto& errors : result.segments.sub_trajectories) AppendSubTrajectory(&rows, key, errors);
   }
   return rows;
 }

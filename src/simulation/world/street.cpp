@@ -9,7 +9,7 @@ namespace evo::simulation {
 namespace {
 
 constexpr std::uint64_t kSunStream = 0x73756E;  // "sun"
-constexpr double kSunRatio = 0.55;              // of sunlight: a hazy day, whose shadows do not saturate the sensor
+constexpr double kSunRatio = 0.55;              // of sunlight, by day
 constexpr double kNightSky = 0.003;             // radiance: just above the sensor's dark current
 
 Sun DrawSun(std::uint64_t seed, bool night) {

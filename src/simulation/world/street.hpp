@@ -59,7 +59,7 @@ class StreetPlan {
     double z = 0.0;
     double radius = 0.0;
   };
-  static constexpr double kBehind = 30.0;  // m before the start: what side windows would show
+  static constexpr double kBehind = 30.0;  // m before the start
   static constexpr double kAhead = 120.0;  // m past the end: the street fills the view to the last instant
 
   void AddJunction(double distance);

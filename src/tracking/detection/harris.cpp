@@ -8,11 +8,11 @@ namespace evo::tracking {
 
 namespace {
 
-constexpr float kHarrisK = 0.04f;
-constexpr std::array<float, 4> kGaussian = {0.39905028f, 0.24203623f, 0.05400558f, 0.00443305f};  // sigma 1 px
+constexpr float kHarrisK = 0.04f;  // of Harris and Stephens
+constexpr std::array<float, 4> kGaussian = {0.39905028f, 0.24203623f, 0.05400558f, 0.00443305f};  // of sigma 1 px
 constexpr int kSmoothReach = 3;
 constexpr int kGradientReach = kSmoothReach + 1;
-constexpr int kStripeRows = 16;
+constexpr int kStripeRows = 16;  // that a thread takes at a time
 
 /// Calls `work` for each row of [margin, height - margin).
 template <typename Work>
@@ -25,11 +25,13 @@ void ForEachRow(int height, int margin, ThreadPool* pool, const Work& work) {
   });
 }
 
-// The loops below are functions of plain pointers because the compiler then vectorises them.
+// The loops are functions of plain pointers, which the compiler vectorises.
 
-/// Products of the Sobel gradients at x in [begin, end).
-void MultiplyGradients(const float* above, const float* in, const float* below, std::ptrdiff_t begin,
-                       std::ptrdiff_t end, float* __restrict xx, float* __restrict xy, float* __restrict yy) {
+/// Products of the Sobel gradients of the middle one of three rows, which are `stride` apart, at x in [begin, end).
+void MultiplyGradients(const float* in, std::ptrdiff_t stride, std::ptrdiff_t begin, std::ptrdiff_t end,
+                       float* __restrict xx, float* __restrict xy, float* __restrict yy) {
+  const float* const above = in - stride;
+  const float* const below = in + stride;
   for (std::ptrdiff_t x = begin; x < end; ++x) {
     const float dx = above[x + 1] - above[x - 1] + 2.0f * (in[x + 1] - in[x - 1]) + below[x + 1] - below[x - 1];
     const float dy = below[x - 1] - above[x - 1] + 2.0f * (below[x] - above[x]) + below[x + 1] - above[x + 1];
@@ -39,7 +41,7 @@ void MultiplyGradients(const float* above, const float* in, const float* below, 
   }
 }
 
-/// Sums of seven elements, `step` apart, around each x in [begin, end).
+/// Sums of the seven elements around each x in [begin, end), `step` apart.
 void SumSevens(const float* in, std::ptrdiff_t step, std::ptrdiff_t begin, std::ptrdiff_t end, float* __restrict out) {
   for (std::ptrdiff_t x = begin; x < end; ++x) {
     out[x] =
@@ -95,8 +97,8 @@ void Harris::SumGradientsAlongRow(int y) {
   thread_local std::array<Plane, 3> products;
   for (Plane& product : products) product.resize(static_cast<std::size_t>(width_));
   const float* const in = smooth_.data() + y * width_;
-  MultiplyGradients(in - width_, in, in + width_, kGradientReach, width_ - kGradientReach, products[0].data(),
-                    products[1].data(), products[2].data());
+  MultiplyGradients(in, width_, kGradientReach, width_ - kGradientReach, products[0].data(), products[1].data(),
+                    products[2].data());
   for (std::size_t i = 0; i < products.size(); ++i) {
     SumSevens(products[i].data(), 1, kBorderPx, width_ - kBorderPx, sums_[i].data() + y * width_);
   }

@@ -9,18 +9,18 @@
 
 namespace evo::tracking {
 
-/// The Harris response of images of one size, on windows of 7 x 7 px. Its own loops and not OpenCV's, which would
-/// allocate several images each time and use one thread.
+/// Corner response of C. Harris and M. Stephens (A Combined Corner and Edge Detector, 1988) on windows of 7 x 7 px.
+/// OpenCV's would allocate several images in each call and use one thread.
 class Harris {
  public:
-  /// No response is computed nearer to the edge of the image.
+  /// The response is zero closer to the image's edge than this.
   static constexpr int kBorderPx = 7;
 
-  /// Responds to the square root of `image` (CV_32F, not negative), smoothed by 1 px: the root evens out pixels that
-  /// fire often and pixels that fire once. The same for any number of threads.
+  /// Computes the response to the square root of `image` (CV_32F, not negative), smoothed by 1 px. The root balances
+  /// pixels with many events and pixels with one.
   void Respond(const cv::Mat& image, ThreadPool* pool);
 
-  /// In no particular unit; positive at corners, zero at the border.
+  /// A row of the response, without a unit: positive at corners, negative at edges.
   const float* row(int y) const { return response_.data() + y * width_; }
 
  private:
@@ -33,7 +33,7 @@ class Harris {
 
   std::ptrdiff_t width_ = 0;
   Plane rows_, smooth_;
-  std::array<Plane, 3> sums_;  // of the gradients' products xx, xy and yy over 7 px of a row
+  std::array<Plane, 3> sums_;  // of the products xx, xy and yy of the gradients, over 7 px of a row
   Plane response_;
 };
 

@@ -4,10 +4,10 @@
 
 namespace evo::tracking {
 
-/// The window of events around the stamp of an observation that its position comes from.
+/// The window of events, centred on an observation's stamp, that the observed position averages over.
 struct ObservedWindow {
-  float half_s = 0.0f;                             ///< half of its length; 0: the position is that of an instant
-  Eigen::Vector2f flow = Eigen::Vector2f::Zero();  ///< px/s, as its events alone tell it
+  float half_s = 0.0f;                             ///< half of its length, s; 0: the position is that of an instant
+  Eigen::Vector2f flow = Eigen::Vector2f::Zero();  ///< px/s, measured from its events alone
 };
 
 }  // namespace evo::tracking
