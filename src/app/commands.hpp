@@ -7,12 +7,10 @@
 
 namespace evo::app {
 
-/// A subcommand: how it is called and what it does. To add one, write its AddXxxCommand in a file of its own and name
-/// it in main.cpp.
+/// A subcommand. To add one, write its AddXxxCommand in a file of commands/, declare it here and add it to main.cpp.
 struct Command {
   CLI::App* parser = nullptr;
-  /// Called after parsing if the user chose this command; throws Error. The words of the command line are for the
-  /// manifest.
+  /// Runs the command after parsing. `command_line` is for the manifest. Throws Error.
   std::function<void(const std::vector<std::string>& command_line)> run;
 };
 

@@ -10,9 +10,9 @@
 
 namespace {
 
-constexpr int kUnexpected = 1;
+constexpr int kUnexpectedError = 1;  // exit code
 
-/// Exactly one line, whatever the message holds.
+/// Prints one line, whatever the message holds.
 int Fail(std::string message, int exit_code) {
   while (message.ends_with('\n')) message.pop_back();
   for (char& c : message) {
@@ -22,11 +22,21 @@ int Fail(std::string message, int exit_code) {
   return exit_code;
 }
 
+/// The help of the chosen command, or the overview.
+std::string HelpCommand(const CLI::App& app) {
+  const auto chosen = app.get_subcommands();
+  return chosen.empty() ? "evo-run --help" : "evo-run " + chosen.front()->get_name() + " --help";
+}
+
 int Run(int argc, char** argv) {
   CLI::App app("Visual odometry from an event camera alone: events in, trajectory out.", "evo-run");
   app.set_version_flag("--version", "evo-run " EVO_VERSION);
   app.require_subcommand(1);
-  app.footer("'evo-run COMMAND --help' shows the options of a command and an example.");
+  app.footer(
+      "Examples:\n"
+      "  evo-run run --events data_samples/street --out out/street\n"
+      "  evo-run simulate configs/scenes/driving_day.yaml --from 50 --duration 8 --out out/driving_day\n"
+      "  evo-run COMMAND --help    options and examples of a command");
   const std::vector<evo::app::Command> commands{evo::app::AddRunCommand(app),      evo::app::AddTrackCommand(app),
                                                 evo::app::AddOdometryCommand(app), evo::app::AddEvaluateCommand(app),
                                                 evo::app::AddReportCommand(app),   evo::app::AddSimulateCommand(app),
@@ -35,7 +45,7 @@ int Run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    return Fail(std::string(error.what()) + "; see evo-run --help", static_cast<int>(evo::ErrorKind::kUsage));
+    return Fail(std::string(error.what()) + "; see " + HelpCommand(app), static_cast<int>(evo::ErrorKind::kUsage));
   }
   for (const auto& command : commands) {
     if (command.parser->parsed()) command.run(std::vector<std::string>(argv, argv + argc));
@@ -53,6 +63,6 @@ int main(int argc, char** argv) {
   } catch (const evo::Error& error) {
     return Fail(error.what(), error.exit_code());
   } catch (const std::exception& error) {
-    return Fail(std::string("unexpected: ") + error.what(), kUnexpected);
+    return Fail(std::string("unexpected: ") + error.what(), kUnexpectedError);
   }
 }

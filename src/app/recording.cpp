@@ -41,25 +41,25 @@ events::Interval ParseInterval(const RecordingArguments& arguments) {
 }  // namespace
 
 void AddSensorOption(CLI::App& command, std::string& sensor) {
-  command.add_option("--sensor", sensor, "size of the sensor in px, if the calibration does not tell; default 240x180")
+  command.add_option("--sensor", sensor, "Size of the sensor in px for a calibration without one; default: 240x180")
       ->type_name("WxH");
 }
 
 void AddRecordingOptions(CLI::App& command, RecordingArguments& arguments) {
   command
       .add_option("--events", arguments.events,
-                  "MVSEC .hdf5 (left camera), UZH events.txt, or the folder of a sequence with either")
+                  "Events: MVSEC .hdf5 (left camera), UZH events.txt, or the folder of a sequence with either")
       ->required()
       ->type_name("PATH");
   command
       .add_option("--calibration", arguments.calibration,
-                  "Kalibr camchain YAML or UZH calib.txt; default: the one in the sequence's folder")
+                  "Calibration: Kalibr camchain YAML or UZH calib.txt; default: the file in the sequence's folder")
       ->type_name("FILE");
   AddSensorOption(command, arguments.sensor);
-  command.add_option("--from", arguments.from, "begin this many seconds after the first event")
+  command.add_option("--from", arguments.from, "Start of the interval in s after the first event")
       ->capture_default_str()
       ->type_name("S");
-  command.add_option("--to", arguments.to, "end this many seconds after the first event; default: at the last")
+  command.add_option("--to", arguments.to, "End of the interval in s after the first event; default: the last event")
       ->type_name("S");
 }
 
@@ -73,7 +73,8 @@ Recording OpenRecording(const RecordingArguments& arguments, RunRecord* record) 
   std::filesystem::path calibration = arguments.calibration;
   if (calibration.empty()) {
     if (!files.calibration) {
-      throw Error(ErrorKind::kUsage, arguments.events + ": no calibration comes with it; give one with --calibration");
+      throw Error(ErrorKind::kUsage,
+                  arguments.events + ": the sequence has no calibration; give one with --calibration");
     }
     calibration = *files.calibration;
   }
@@ -82,6 +83,17 @@ Recording OpenRecording(const RecordingArguments& arguments, RunRecord* record) 
   record->AddLargeInput("events", files.events);
   record->AddInput("calibration", calibration);
   return {std::move(camera), files.events, std::move(reader), interval, files.ground_truth};
+}
+
+std::string SequenceName(const std::filesystem::path& file) {
+  std::string name = file.stem().string();
+  if (name == "groundtruth" || name == "events") {
+    return std::filesystem::absolute(file).parent_path().filename().string();
+  }
+  for (const std::string ending : {"_gt", "_groundtruth", "_data"}) {
+    if (name.ends_with(ending) && name.size() > ending.size()) name.resize(name.size() - ending.size());
+  }
+  return name;
 }
 
 }  // namespace evo::app

@@ -5,13 +5,13 @@
 #include <optional>
 #include <string>
 
-#include "app/run_record.hpp"
+#include "app/run/run_record.hpp"
 #include "evo/events/event_reader.hpp"
 #include "evo/geometry/camera.hpp"
 
 namespace evo::app {
 
-/// What the user says about a recording of events.
+/// The arguments that name a recording of events.
 struct RecordingArguments {
   std::string events;
   std::string calibration;
@@ -23,21 +23,25 @@ struct RecordingArguments {
 /// --events, --calibration, --sensor, --from and --to.
 void AddRecordingOptions(CLI::App& command, RecordingArguments& arguments);
 
-/// A camera from --calibration and --sensor. Throws Error.
+/// Reads the camera from --calibration and --sensor. Throws Error.
 geometry::Camera OpenCamera(const std::filesystem::path& calibration, const std::string& sensor);
-/// --sensor, for commands without events.
+/// --sensor.
 void AddSensorOption(CLI::App& command, std::string& sensor);
 
-/// A recording that has been found and whose beginning has been read.
+/// An open recording with its camera.
 struct Recording {
   geometry::Camera camera;
   std::filesystem::path events;
   std::unique_ptr<events::EventReader> reader;
   events::Interval interval;
-  std::optional<std::filesystem::path> ground_truth;  ///< found beside the events
+  std::optional<std::filesystem::path> ground_truth;  ///< the file beside the events, if any
 };
 
-/// Finds the files, reads the calibration, opens the events and notes both in `record`. Throws Error.
+/// Finds the files, reads the calibration, opens the events and adds both to `record`. Throws Error.
 Recording OpenRecording(const RecordingArguments& arguments, RunRecord* record);
+
+/// The name of the sequence to which a file of events or ground truth belongs: "drive" for drive_data.hdf5 and
+/// drive_gt.hdf5, the folder's name for events.txt and groundtruth.txt.
+std::string SequenceName(const std::filesystem::path& file);
 
 }  // namespace evo::app

@@ -9,12 +9,12 @@ namespace evo {
 
 namespace {
 
-constexpr std::chrono::microseconds kWatch{400};  // before a thread sleeps: to wake one takes about as long
+constexpr std::chrono::microseconds kSpinTime{400};  // about the time that waking a sleeping thread takes
 
-/// Watches `done` for a moment.
+/// Spins until `done` or, at most, for kSpinTime.
 template <typename Condition>
-void WatchFor(Condition done) {
-  const auto end = std::chrono::steady_clock::now() + kWatch;
+void SpinUntil(Condition done) {
+  const auto end = std::chrono::steady_clock::now() + kSpinTime;
   while (!done() && std::chrono::steady_clock::now() < end) std::this_thread::yield();
 }
 
@@ -67,7 +67,7 @@ void ThreadPool::Drain(Job& job) {
 void ThreadPool::RunWorker() {
   std::size_t seen = 0;
   while (true) {
-    WatchFor([&] { return generation_ != seen; });
+    SpinUntil([&] { return generation_ != seen; });
     std::unique_lock lock(mutex_);
     wake_.wait(lock, [&] { return stop_ || (job_ && generation_ != seen); });
     if (stop_) return;
@@ -93,7 +93,7 @@ void ThreadPool::ForEach(std::size_t count, const std::function<void(std::size_t
     }
     wake_.notify_all();
     Drain(job);
-    WatchFor([&] { return job.busy == 0; });
+    SpinUntil([&] { return job.busy == 0; });
     std::unique_lock lock(mutex_);
     finished_.wait(lock, [&] { return job.busy == 0; });
     job_ = nullptr;

@@ -1,5 +1,6 @@
 #include "evo/core/progress.hpp"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,8 +11,8 @@ namespace evo {
 
 namespace {
 
-constexpr int kBarWidth = 30;
-constexpr auto kRedraw = std::chrono::milliseconds(100);
+constexpr int kBarWidth = 30;  // characters
+constexpr auto kRedrawInterval = std::chrono::milliseconds(100);
 
 }  // namespace
 
@@ -27,14 +28,14 @@ Progress::~Progress() {
 void Progress::Update(double fraction) {
   if (!enabled_) return;
   const auto now = std::chrono::steady_clock::now();
-  if (now - drawn_ < kRedraw) return;
+  if (now - drawn_ < kRedrawInterval) return;
   drawn_ = now;
   fraction = std::clamp(fraction, 0.0, 1.0);
   const int filled = static_cast<int>(fraction * kBarWidth);
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   const double left = fraction > 0.01 ? elapsed * (1.0 - fraction) / fraction : 0.0;
-  std::fprintf(stderr, "\r%-9s [%.*s%*s] %3.0f %%  %.0f s left\033[K", label_.c_str(), filled,
-               "##############################", kBarWidth - filled, "", 100.0 * fraction, left);
+  fmt::print(stderr, "\r{:<9} [{:#<{}}{:{}}] {:3.0f} %  {:.0f} s left\033[K", label_, "", filled, "",
+             kBarWidth - filled, 100.0 * fraction, left);
   std::fflush(stderr);
 }
 

@@ -7,7 +7,7 @@ namespace evo {
 
 namespace {
 
-constexpr double kLargestSeconds = 9e9;
+constexpr double kMaxSeconds = 9e9;  // int64 holds 9.2e9 s in nanoseconds
 
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
@@ -43,10 +43,10 @@ std::optional<TimeNs> ParseTime(std::string_view text) {
   if (p != end) {
     double seconds = 0.0;
     const auto [last, error] = std::from_chars(text.data(), end, seconds);
-    if (error != std::errc() || last != end || !(std::abs(seconds) < kLargestSeconds)) return std::nullopt;
+    if (error != std::errc() || last != end || !(std::abs(seconds) < kMaxSeconds)) return std::nullopt;
     return FromSeconds(seconds);
   }
-  if (static_cast<double>(whole) >= kLargestSeconds) return std::nullopt;
+  if (static_cast<double>(whole) >= kMaxSeconds) return std::nullopt;
   for (int i = decimals; i < 9; ++i) fraction *= 10;
   const TimeNs t = whole * kNsPerSecond + fraction + (round_up ? 1 : 0);
   return negative ? -t : t;

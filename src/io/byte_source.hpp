@@ -8,7 +8,7 @@
 
 namespace evo::io {
 
-/// Random access to the bytes of a regular file. Failures are Errors of kind kInput.
+/// Random access to the bytes of a regular file. Every failure is an Error of kind kInput.
 class ByteSource {
  public:
   explicit ByteSource(const std::filesystem::path& path);
@@ -18,7 +18,7 @@ class ByteSource {
 
   const std::filesystem::path& path() const { return path_; }
   std::int64_t size() const { return size_; }
-  /// Fills `buffer` from `offset` on; fewer bytes only at the end of the file.
+  /// Reads `count` bytes from `offset` on, fewer only at the end of the file; returns their number.
   std::size_t Read(std::int64_t offset, std::size_t count, char* buffer) const;
 
  private:

@@ -14,7 +14,7 @@ namespace evo::io {
 
 namespace {
 
-constexpr std::size_t kSniffedBytes = std::size_t{64} << 10;
+constexpr std::size_t kProbedBytes = std::size_t{64} << 10;
 constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";
 
 bool IsBinary(std::string_view text) {
@@ -98,7 +98,7 @@ FileKind DetectKind(const std::filesystem::path& path) {
   }
   if (std::filesystem::is_directory(path)) return FileKind::kFolder;
   const ByteSource file(path);
-  std::string text(kSniffedBytes, '\0');
+  std::string text(kProbedBytes, '\0');
   text.resize(file.Read(0, text.size(), text.data()));
   if (text.empty()) return FileKind::kEmpty;
   if (text.starts_with(kPngSignature)) return FileKind::kPng;

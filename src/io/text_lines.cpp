@@ -10,7 +10,7 @@ namespace evo::io {
 
 namespace {
 
-constexpr std::size_t kQuoted = 60;
+constexpr std::size_t kMaxQuoted = 60;  // characters; a message stays one line on a terminal
 
 }  // namespace
 
@@ -80,8 +80,8 @@ std::optional<std::int64_t> ParseInteger(std::string_view text) {
 
 std::string Quote(std::string_view text) {
   std::string quoted = "'";
-  for (const char c : text.substr(0, kQuoted)) quoted += c == '\t' || (c >= ' ' && c < '\x7f') ? c : '?';
-  return quoted + (text.size() > kQuoted ? "...'" : "'");
+  for (const char c : text.substr(0, kMaxQuoted)) quoted += c == '\t' || (c >= ' ' && c < '\x7f') ? c : '?';
+  return quoted + (text.size() > kMaxQuoted ? "...'" : "'");
 }
 
 }  // namespace evo::io

@@ -12,17 +12,17 @@
 
 namespace evo::io {
 
-/// The lines of a text file that hold something: blank ones and comments (`#`) are passed over, \r\n is a line end.
+/// The lines of a text file without blank ones and comments (`#`); a line ends with \n or \r\n.
 class TextLines {
  public:
-  /// Reads the whole file. Throws Error (kInput) if that fails.
+  /// Reads the whole file. Throws Error (kInput).
   explicit TextLines(const std::filesystem::path& path);
 
-  /// False at the end of the file. `line` has no blanks around it and stays valid as long as this object.
+  /// Returns false at the end of the file. `line` is trimmed and valid as long as this object.
   bool Next(std::string_view* line);
-  /// Number of the line that Next() gave last, from 1.
+  /// Number of the last line of Next(), from 1.
   std::size_t number() const { return number_; }
-  /// "<file>:<line>: <what>"
+  /// The error "<file>:<line>: <what>".
   Error Failure(const std::string& what) const { return Failure(number_, what); }
   Error Failure(std::size_t number, const std::string& what) const;
 
@@ -33,22 +33,22 @@ class TextLines {
   std::size_t number_ = 0;
 };
 
-/// Cuts a line at blanks and tabs, any number of them.
+/// Splits a line at runs of blanks and tabs.
 std::vector<std::string_view> SplitFields(std::string_view line);
 
-/// Cuts a line at each comma; the fields have no blanks around them.
+/// Splits a line at each comma and trims the fields.
 std::vector<std::string_view> SplitAtCommas(std::string_view line);
 
-/// Without blanks and \r at either end.
+/// `text` without blanks, tabs and \r at either end.
 std::string_view Trim(std::string_view text);
 
-/// Empty unless `text` is entirely a finite number.
+/// Empty unless the whole text is a finite number.
 std::optional<double> ParseFinite(std::string_view text);
 
-/// Empty unless `text` is entirely an integer.
+/// Empty unless the whole text is an integer.
 std::optional<std::int64_t> ParseInteger(std::string_view text);
 
-/// 'text' for messages: bytes that do not print are replaced and long text is cut.
+/// 'text' for messages; unprintable bytes are replaced and long text is cut.
 std::string Quote(std::string_view text);
 
 }  // namespace evo::io

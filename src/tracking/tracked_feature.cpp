@@ -6,8 +6,8 @@ namespace evo::tracking {
 
 namespace {
 
-constexpr double kDepthGain = 0.25;    // of one frame, once a few are averaged: the noise of a flow is several percent
-constexpr double kGradientGain = 0.1;  // of one frame: a change of shape is noisier than a flow
+constexpr double kDepthGain = 0.25;           // of one frame, after the first few
+constexpr double kGradientGain = 0.1;         // of one frame: a change of shape is noisier than a flow
 constexpr double kMaxGradientPerFlow = 1e-3;  // 1/px^2; a steeper plane is seen edge-on, or not a plane
 
 }  // namespace

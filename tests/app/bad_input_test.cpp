@@ -99,7 +99,7 @@ TEST_F(BadInputTest, MissingFiles) {
   ExpectTracksRefused(folder / "absent.txt", kInput, {"no such file"});
 }
 
-TEST_F(BadInputTest, AFolderWithoutARecording) {
+TEST_F(BadInputTest, FolderWithoutRecording) {
   fs::create_directories(folder / "nothing");
   ExpectEventsRefused(folder / "nothing", {"no *_data.hdf5"});
 }
@@ -132,7 +132,7 @@ TEST_F(BadInputTest, TruncatedTrajectoryText) {
   ExpectTruthRefused(Write("cut.txt", text.substr(0, text.rfind(' '))), kInput, {"cut.txt:"});
 }
 
-TEST_F(BadInputTest, ADamagedBlockInsideAnHdf5File) {
+TEST_F(BadInputTest, DamagedHdf5Block) {
   std::string bytes = ReadFile(kEvents);
   std::fill(bytes.begin() + 1'000'000, bytes.begin() + 2'000'000, '\x55');
   ExpectEventsRefused(Write("damaged.hdf5", bytes), {"damaged"});
@@ -192,7 +192,7 @@ TEST_F(BadInputTest, PixelOutsideTheSensor) {
 
 TEST_F(BadInputTest, CalibrationOfAnotherSensor) {
   const fs::path calibration = Write("calib.txt", "199.1 198.8 132.2 110.7 -0.368 0.150 -0.0003 -0.0006 0.0\n");
-  ExpectCalibrationRefused(calibration, {"street_data.hdf5", "240 x 180", "do not fit together"});
+  ExpectCalibrationRefused(calibration, {"street_data.hdf5", "240 x 180", "give the calibration of this recording"});
   ExpectRefusal("run --events " + Quote(Sample()) + " --sensor 240x180", kInput,
                 {"camchain-imucam-street.yaml", "346 x 260", "240 x 180"});
 }
@@ -207,7 +207,7 @@ TEST_F(BadInputTest, TracksOfAnotherSensor) {
   ExpectTracksRefused(WriteTrackText("tracks.txt", 60, 40.0), kInput, {"346 x 260", "do not belong together"});
 }
 
-TEST_F(BadInputTest, IntervalBehindTheEnd) {
+TEST_F(BadInputTest, IntervalAfterTheEnd) {
   ExpectRefusal("run --events " + Quote(Sample()) + " --from 60", kNothingToDo, {"street_data.hdf5", "1.4999"});
   ExpectRefusal("run --events " + Quote(Sample()) + " --to 0.001", kNothingToDo, {"street_data.hdf5"});
 }
@@ -231,7 +231,7 @@ TEST_F(BadInputTest, UnknownOption) {
   ExpectRefusal("track --ground-truth x --events " + Quote(Sample()), kUsage, {"--ground-truth"});
 }
 
-TEST_F(BadInputTest, NoCalibrationAtHand) {
+TEST_F(BadInputTest, NoCalibration) {
   ExpectRefusal("run --events " + Quote(kEvents), kUsage, {"street_data.hdf5", "--calibration"});
 }
 
@@ -253,7 +253,7 @@ TEST_F(BadInputTest, DegenerateAlignment) {
                 {"line.txt"});
 }
 
-TEST_F(BadInputTest, AFileInTheWayOfTheResults) {
+TEST_F(BadInputTest, FileInPlaceOfTheOutputFolder) {
   Write("file", "in the way");
   for (const char* place : {"file", "file/result"}) {
     EXPECT_EQ(Refusal("run -q --events " + Quote(Sample()) + " --out " + Quote(folder / place)), kOutput);

@@ -21,19 +21,20 @@ class CommandLineTest : public EvoRunTest {
   }
 };
 
-TEST_F(CommandLineTest, HelpShowsAnExampleOfEveryCommand) {
+TEST_F(CommandLineTest, HelpShowsExamplesOfEveryCommand) {
   EXPECT_EQ(Run("--help"), 0);
   const std::string overview = out;
   for (const std::string command : {"run", "track", "odometry", "evaluate", "report", "simulate", "info", "config"}) {
     EXPECT_NE(overview.find("\n  " + command + " "), std::string::npos) << overview;
     ASSERT_EQ(Run(command + " --help"), 0);
-    EXPECT_NE(out.find("Example:\n  evo-run " + command), std::string::npos) << out;
+    EXPECT_NE(out.find("\nExamples:\n"), std::string::npos) << out;
+    EXPECT_NE(out.find("\n  evo-run " + command + " "), std::string::npos) << out;
   }
   EXPECT_EQ(Run("--version"), 0);
   EXPECT_TRUE(out.starts_with("evo-run "));
 }
 
-TEST_F(CommandLineTest, EvaluateShowsEachKindOfUse) {
+TEST_F(CommandLineTest, EvaluateHelpShowsEachUse) {
   ASSERT_EQ(Run("evaluate --help"), 0);
   for (const char* use : {"\n  evo-run evaluate --estimate out/trajectory.txt", "kitti_lengths_m=", "--rpe 1s,10m",
                           "\n  evo-run evaluate --tracks out/tracks.txt", "--true-tracks true_tracks.txt"}) {
@@ -41,7 +42,7 @@ TEST_F(CommandLineTest, EvaluateShowsEachKindOfUse) {
   }
 }
 
-TEST_F(CommandLineTest, MistakesOfUsageEndWithTwo) {
+TEST_F(CommandLineTest, UsageErrorsExitWithTwo) {
   for (const char* words : {"", "fly", "--fly", "config", "config --print --check x.yaml", "evaluate"}) {
     EXPECT_EQ(Refusal(words), 2) << words;
   }
@@ -59,7 +60,7 @@ TEST_F(CommandLineTest, MistakesOfUsageEndWithTwo) {
   EXPECT_FALSE(fs::exists(folder / "result"));
 }
 
-TEST_F(CommandLineTest, MistakesOfConfigurationEndWithThree) {
+TEST_F(CommandLineTest, ConfigurationErrorsExitWithThree) {
   EXPECT_EQ(Refusal(Evaluate("gt.txt", "gt.txt", "--set evaluation.chrod_m=2")), 3);
   EXPECT_NE(err.find("evaluation.chord_m"), std::string::npos) << err;
   const fs::path file = folder / "bad.yaml";
@@ -68,7 +69,7 @@ TEST_F(CommandLineTest, MistakesOfConfigurationEndWithThree) {
   EXPECT_NE(err.find("bad.yaml:3"), std::string::npos) << err;
 }
 
-TEST_F(CommandLineTest, RelativeErrorsOverWhatWasAskedFor) {
+TEST_F(CommandLineTest, RelativeErrorsOverGivenDistances) {
   ASSERT_EQ(Run(Evaluate("est_drift.txt", "gt.txt", "--association nearest --rpe 10m,0.5s --rpe-pairs all")), 0) << err;
   EXPECT_EQ(err, "");
   const std::string metrics = ReadFile(folder / "result" / "metrics.csv");
@@ -81,7 +82,7 @@ TEST_F(CommandLineTest, RelativeErrorsOverWhatWasAskedFor) {
   EXPECT_NE(ReadFile(folder / "result" / "summary.csv").find(",10m,0.085660128,"), std::string::npos);
 }
 
-TEST_F(CommandLineTest, ADeltaLongerThanTheWayIsMissedOrRefused) {
+TEST_F(CommandLineTest, DeltaLongerThanThePathIsSkippedOrRefused) {
   ASSERT_EQ(Run(Evaluate("gt.txt", "gt.txt", "--align none --set evaluation.rpe_deltas=1f,9000m")), 0) << err;
   EXPECT_NE(ReadFile(folder / "result" / "metrics.csv").find(",9000,m,consecutive,0,,,,,,,\n"), std::string::npos);
   EXPECT_EQ(Refusal(Evaluate("gt.txt", "gt.txt", "--align none --rpe 9000m --force")), 5);
@@ -89,7 +90,7 @@ TEST_F(CommandLineTest, ADeltaLongerThanTheWayIsMissedOrRefused) {
   EXPECT_EQ(Refusal(Evaluate("gt.txt", "gt.txt", "--set evaluation.rpe_deltas=9 --force")), 3);
 }
 
-TEST_F(CommandLineTest, KittiPosesAreComparedOneByOne) {
+TEST_F(CommandLineTest, KittiPosesAreAssociatedByNumber) {
   ASSERT_EQ(Run(Evaluate("kitti_est.txt", "kitti_gt.txt", "--rpe 100m")), 0) << err;
   EXPECT_TRUE(out.starts_with("path 1229.41 m, up -y\n")) << out;
   EXPECT_TRUE(ReadFile(folder / "result" / "errors.csv").starts_with("frame,distance,"));
@@ -112,20 +113,29 @@ TEST_F(CommandLineTest, PrintedConfigurationPassesTheCheck) {
   EXPECT_EQ(Run("config --check '" + (folder / "printed.yaml").string() + "'"), 0);
 }
 
-TEST_F(CommandLineTest, DefaultConfigurationFileIsThePrintedOne) {
+TEST_F(CommandLineTest, MarkdownListsTheParametersOfFilesAndScenes) {
+  ASSERT_EQ(Run("config --markdown"), 0);
+  for (const char* text : {"# Parameters\n", "\n### tracker\n", "\n| `tracker.features` | `150` |",
+                           "\n### odometry.pose\n", "\n| `scene.kind` | `street` |", "\n| `output.start_s` |"}) {
+    EXPECT_NE(out.find(text), std::string::npos) << text;
+  }
+  EXPECT_EQ(Refusal("config --markdown --print"), 2);
+}
+
+TEST_F(CommandLineTest, DefaultConfigurationFileIsUpToDate) {
   ASSERT_EQ(Run("config --print"), 0);
   EXPECT_EQ(out, ReadFile(EVO_SOURCE_DIR "/configs/default.yaml"))
-      << "write it anew: evo-run config --print > configs/default.yaml";
+      << "regenerate it: evo-run config --print > configs/default.yaml";
   EXPECT_EQ(Run("config --check '" EVO_SOURCE_DIR "/configs/default.yaml'"), 0);
 }
 
-TEST_F(CommandLineTest, AFullDiskBehindStandardOutputIsReported) {
+TEST_F(CommandLineTest, FullDiskOfStandardOutputIsReported) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
   EXPECT_EQ(Run("config --print >/dev/full"), 8);
   EXPECT_NE(err.find("standard output"), std::string::npos) << err;
 }
 
-TEST_F(CommandLineTest, BadInputsHaveCodesOfTheirOwn) {
+TEST_F(CommandLineTest, InputErrorsHaveTheirExitCodes) {
   EXPECT_EQ(Refusal(Evaluate("absent.txt", "gt.txt")), 4);
   EXPECT_EQ(Refusal(Evaluate("reference.csv", "gt.txt")), 4);
   EXPECT_EQ(Refusal(Evaluate("nooverlap.txt", "gt.txt")), 5);
@@ -166,7 +176,7 @@ TEST_F(CommandLineTest, EarlierResultsAreKeptUnlessForced) {
   EXPECT_NE(ReadFile(folder / "result" / "summary.csv"), before);
 }
 
-TEST_F(CommandLineTest, AnOutputFolderThatCannotBeIsRefusedBeforeWork) {
+TEST_F(CommandLineTest, UnusableOutputFolderIsRefusedBeforeWork) {
   std::ofstream(folder / "result") << "a file";
   EXPECT_EQ(Refusal(Evaluate("absent.txt", "gt.txt")), 8);
 }

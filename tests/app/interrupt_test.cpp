@@ -1,4 +1,4 @@
-#include "app/interrupt.hpp"
+#include "app/run/interrupt.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -20,7 +20,7 @@ class InterruptTest : public ::testing::Test {
   fs::path folder = fs::temp_directory_path() / ("evo_interrupt_test_" + std::to_string(::getpid()));
 };
 
-TEST_F(InterruptTest, LeavesNothingHalfWritten) {
+TEST_F(InterruptTest, RemovesPartialFiles) {
   std::ofstream(folder / "earlier.txt") << "whole";
   const pid_t child = ::fork();
   ASSERT_GE(child, 0);

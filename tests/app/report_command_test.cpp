@@ -46,7 +46,7 @@ TEST_F(ReportCommandTest, EarlierReportsAreKeptUnlessForced) {
   EXPECT_NE(ReadFile(folder / "report" / "runs.tex").find("alignment sim3"), std::string::npos);
 }
 
-TEST_F(ReportCommandTest, MistakesHaveTheirCodes) {
+TEST_F(ReportCommandTest, ErrorsHaveTheirExitCodes) {
   const std::string run = Evaluated("a");
   EXPECT_EQ(Refusal("report " + To("report")), 2);
   EXPECT_EQ(Refusal("report " + run), 2);

@@ -102,7 +102,7 @@ TEST_F(SweepTest, OneCorruptSequenceOfSixFailsAndTheOthersGoOn) {
   EXPECT_EQ(CountRows(""), 5);
 }
 
-TEST_F(SweepTest, TheProgramAndTheConfigurationCount) {
+TEST_F(SweepTest, NewProgramOrConfigurationRunsAgain) {
   AddRecording("s1");
   AddRecording("s2");
   const std::string program = Pretender();
@@ -157,7 +157,7 @@ TEST_F(SweepTest, DataSetsKnowTheirFiles) {
   }
 }
 
-TEST_F(SweepTest, WhatIsNamedAndMissingIsAFailure) {
+TEST_F(SweepTest, MissingSequencesAreFailures) {
   EXPECT_EQ(Sweep("MVSEC=m SEQUENCES=outdoor_night2 OUT=out"), 2);
   EXPECT_EQ(CountRows("outdoor_night2,failed,exit code 4: "), 1) << err;
   EXPECT_EQ(Sweep("FOLDERS=absent OUT=out"), 2);
@@ -172,7 +172,7 @@ TEST_F(SweepTest, DeletesOnlyResultsOfSweeps) {
   EXPECT_TRUE(fs::exists(folder / "recordings/street/street_data.hdf5"));
 }
 
-TEST_F(SweepTest, MistakesAreSaid) {
+TEST_F(SweepTest, ErrorsAreReported) {
   EXPECT_EQ(Sweep(""), 2);
   EXPECT_NE(err.find("nothing to run"), std::string::npos) << err;
   EXPECT_EQ(Sweep("MVSEC=m SEQUENCES=outdoor_day9"), 2);

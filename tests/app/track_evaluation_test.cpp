@@ -87,7 +87,7 @@ class TrackEvaluationTest : public EvoRunTest {
   }
 };
 
-TEST_F(TrackEvaluationTest, OurTracksOfTheStreetKeepTheirQuality) {
+TEST_F(TrackEvaluationTest, StreetTracksMeetTheirBounds) {
   const auto quality = JudgeTracks("street", "street_gt.hdf5", "camchain-imucam-street.yaml");
   ExpectQuality(quality, {.judged = 110.0, .track_error_px = 0.85, .outlier_share = 0.02, .age_share = 0.55});
   // The tables of lifetimes agree where every frame has tracks.
@@ -98,18 +98,18 @@ TEST_F(TrackEvaluationTest, OurTracksOfTheStreetKeepTheirQuality) {
             std::string::npos);
 }
 
-TEST_F(TrackEvaluationTest, OurTracksOfTheNightKeepTheirQuality) {
+TEST_F(TrackEvaluationTest, NightTracksMeetTheirBounds) {
   // The outliers are on the rim of the head lamps' light, which moves with the car.
   ExpectQuality(JudgeTracks("night", "night_gt.hdf5", "camchain-imucam-night.yaml"),
                 {.judged = 80.0, .track_error_px = 0.95, .outlier_share = 0.07, .age_share = 0.55});
 }
 
-TEST_F(TrackEvaluationTest, OurTracksOfTheHandheldRoomKeepTheirQuality) {
+TEST_F(TrackEvaluationTest, HandheldTracksMeetTheirBounds) {
   ExpectQuality(JudgeTracks("handheld", "depth_gt.hdf5", "calib.txt"),
                 {.judged = 60.0, .track_error_px = 0.45, .outlier_share = 0.02, .age_share = 0.8});
 }
 
-TEST_F(TrackEvaluationTest, DepthMapsGiveTheErrorAndTheTrueAge) {
+TEST_F(TrackEvaluationTest, DepthMapsGiveErrorAndTrueAge) {
   ASSERT_EQ(Run(SceneArguments(2.0) + To("result")), 0) << err;
   auto quality = Quality("result");
   EXPECT_EQ(quality["truth "], "depth");
@@ -125,7 +125,7 @@ TEST_F(TrackEvaluationTest, DepthMapsGiveTheErrorAndTheTrueAge) {
             std::string::npos);
 }
 
-TEST_F(TrackEvaluationTest, TheTruthIsChosenByWhatThereIsOrByTheUser) {
+TEST_F(TrackEvaluationTest, TruthIsChosenByContentOrOption) {
   ASSERT_EQ(Run(SceneArguments(0.0) + " --track-truth triangulated" + To("asked")), 0) << err;
   EXPECT_EQ(Quality("asked")["truth "], "triangulated");
   ASSERT_EQ(Run(SceneArguments(0.0, false) + To("found")), 0) << err;
@@ -134,7 +134,7 @@ TEST_F(TrackEvaluationTest, TheTruthIsChosenByWhatThereIsOrByTheUser) {
   EXPECT_NE(err.find("depth_image_raw"), std::string::npos) << err;
 }
 
-TEST_F(TrackEvaluationTest, TrueTracksOfAnyTrackersFile) {
+TEST_F(TrackEvaluationTest, TrueTracksServeAnyTracker) {
   const std::string haste = "0.1,13,20,0,1\n0.0,10,20,0,1\n0.2,10,23,0,1\n0.1,9,9,0,2\n";
   ASSERT_EQ(Run(TrueTrackArguments(haste, "1 0 10 20\n1 0.4 10 20\n") + " --track-thresholds 2,4" + To("result")), 0)
       << err;
@@ -147,7 +147,7 @@ TEST_F(TrackEvaluationTest, TrueTracksOfAnyTrackersFile) {
   EXPECT_EQ(quality["outlier_share 2"], "1.000000000");
 }
 
-TEST_F(TrackEvaluationTest, TheClockOffsetMovesTheTracks) {
+TEST_F(TrackEvaluationTest, ClockOffsetShiftsTheTracks) {
   const std::string arguments = TrueTrackArguments("1 5.0 10 0\n1 5.1 11 0\n1 5.2 12 0\n", "1 0 10 0\n1 0.5 15 0\n");
   EXPECT_EQ(Refusal(arguments + To("none")), 5);
   ASSERT_EQ(Run(arguments + " --set evaluation.estimate_clock_offset_s=-5" + To("moved")), 0) << err;
@@ -156,7 +156,7 @@ TEST_F(TrackEvaluationTest, TheClockOffsetMovesTheTracks) {
   EXPECT_EQ(ReadFile(folder / "option" / "track_errors.csv"), ReadFile(folder / "moved" / "track_errors.csv"));
 }
 
-TEST_F(TrackEvaluationTest, OnlyTheIntervalIsJudged) {
+TEST_F(TrackEvaluationTest, OnlyTheIntervalIsEvaluated) {
   const std::string arguments =
       TrueTrackArguments("1 0.0 10 0\n1 0.1 13 0\n1 0.2 13 0\n1 0.3 99 0\n", "1 0 10 0\n1 0.4 10 0\n");
   ASSERT_EQ(Run(arguments + " --from-stamp 0.1 --to-stamp 0.2" + To("part")), 0) << err;
@@ -183,7 +183,7 @@ TEST_F(TrackEvaluationTest, TrajectoryAndTracksTogetherLeaveOneManifest) {
   EXPECT_EQ(Refusal(arguments + To("both")), 8);  // results are not overwritten
 }
 
-TEST_F(TrackEvaluationTest, TracksThatCannotBeJudgedLeaveNothingBehind) {
+TEST_F(TrackEvaluationTest, FailedEvaluationLeavesNothing) {
   const std::string arguments = SceneArguments(0.0);
   io::WriteTum(folder / "estimate.txt", evaluation::testing::TrackScene().Poses());
   Write("tracks.txt", "1 0 5 5\n1 0.1 5 nan\n");
@@ -191,7 +191,7 @@ TEST_F(TrackEvaluationTest, TracksThatCannotBeJudgedLeaveNothingBehind) {
   EXPECT_FALSE(fs::exists(folder / "both"));
 }
 
-TEST_F(TrackEvaluationTest, LifetimesOfAFewTracksAreThoseOfTheirOwnFrames) {
+TEST_F(TrackEvaluationTest, LifetimesOfFewTracksCountTheirOwnFrames) {
   std::string frames;
   std::string single;
   for (int k = 0; k < 20; ++k) {
@@ -230,7 +230,7 @@ TEST_F(TrackEvaluationTest, IncompleteCommandLinesAreRefused) {
   }
 }
 
-TEST_F(TrackEvaluationTest, TracksAndTruthThatDoNotBelongTogetherAreRefused) {
+TEST_F(TrackEvaluationTest, TracksOfAnotherSequenceAreRefused) {
   EXPECT_EQ(Refusal(TrueTrackArguments("1 0 5 5\n1 1 5 5\n", "2 0 5 5\n2 1 5 5\n") + To("none")), 5);
   EXPECT_NE(err.find("t.txt"), std::string::npos) << err;
   EXPECT_EQ(Refusal(TrueTrackArguments("1 0 5 5\n1 1 5 5\n", "1 7 5 5\n1 8 5 5\n") + To("none")), 5);

@@ -50,7 +50,7 @@ TEST_F(OutputFileTest, KeepsTheOldFileUntilCommit) {
   EXPECT_EQ(Content(path), "old");
 }
 
-TEST_F(OutputFileTest, ReportsAFolderThatCannotBeMade) {
+TEST_F(OutputFileTest, ReportsAFolderThatCannotBeCreated) {
   std::ofstream(folder / "file") << "x";
   try {
     OutputFile file(folder / "file" / "result.txt");

@@ -10,7 +10,7 @@
 namespace evo {
 namespace {
 
-TEST(ThreadPool, VisitsEveryIndexOnceForAnyTeamSize) {
+TEST(ThreadPool, VisitsEveryIndexOnceForAnyNumberOfThreads) {
   for (const int threads : {1, 2, 5}) {
     ThreadPool pool(threads);
     EXPECT_EQ(pool.size(), threads);

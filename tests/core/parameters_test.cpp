@@ -99,7 +99,7 @@ TEST_F(ParametersTest, RefusesValuesOutOfRangeOrOfTheWrongType) {
   EXPECT_EQ(features, 100);
 }
 
-TEST_F(ParametersTest, SettingsWin) {
+TEST_F(ParametersTest, SettingsOverrideTheFile) {
   parameters.LoadText("tracker: {features: 50}", "a");
   parameters.Set("tracker.features=60");
   EXPECT_EQ(features, 60);
@@ -108,7 +108,7 @@ TEST_F(ParametersTest, SettingsWin) {
   EXPECT_THROW(parameters.LoadFile("/nonexistent.yaml"), Error);
 }
 
-TEST_F(ParametersTest, TextOfItsOwnGrammar) {
+TEST_F(ParametersTest, ValidatesTexts) {
   std::string list = "1,2";
   const auto is_list = [](const std::string& text) {
     return !text.empty() && text.find_first_not_of("0123456789,") == std::string::npos;
@@ -170,7 +170,7 @@ TEST_F(ParametersTest, AliasStaysOutOfSuggestionsAndOfTheYaml) {
   EXPECT_NE(Refusal("tracker: {most_features: 5}").find("'tracker.features' is '5'"), std::string::npos);
 }
 
-TEST_F(ParametersTest, AliasOfNothingIsAMistakeOfTheProgram) {
+TEST_F(ParametersTest, AliasOfAnUnknownParameterThrows) {
   EXPECT_THROW(parameters.Alias("tracker.most", "tracker.feature"), std::logic_error);
 }
 

@@ -57,7 +57,7 @@ TEST_F(CalibrationIoTest, ReadsRadtanCamchains) {
   EXPECT_EQ(ReadCalibration(Write("camchain.yaml", text)).distortion, geometry::Distortion::kRadTan);
 }
 
-TEST_F(CalibrationIoTest, ReadsUzhWithTheSensorThatItDoesNotName) {
+TEST_F(CalibrationIoTest, ReadsUzhWithTheDefaultOrGivenSensor) {
   const auto path = Write("calib.txt", kUzh);
   const geometry::Calibration c = ReadCalibration(path);
   EXPECT_EQ(c.distortion, geometry::Distortion::kRadTan);
@@ -69,7 +69,7 @@ TEST_F(CalibrationIoTest, ReadsUzhWithTheSensorThatItDoesNotName) {
   EXPECT_EQ(ReadCalibration(path, ImageSize{346, 260}).width, 346);
 }
 
-TEST_F(CalibrationIoTest, ASizeMustAgreeWithTheCamchain) {
+TEST_F(CalibrationIoTest, SizeMustAgreeWithTheCamchain) {
   const auto path = Write("camchain.yaml", kCamchain);
   EXPECT_EQ(ReadCalibration(path, ImageSize{346, 260}).height, 260);
   ExpectMentions(Refusal([&] {
@@ -114,7 +114,7 @@ TEST_F(CalibrationIoTest, RefusesOtherFiles) {
 }
 
 /// As a lone camera is rectified: not turned, by its own intrinsics.
-TEST_F(CalibrationIoTest, ACamchainSaysHowToRectify) {
+TEST_F(CalibrationIoTest, CamchainHoldsTheRectification) {
   geometry::Calibration c{geometry::Distortion::kEquidistant, 30, 20, 11.5, 12.5, 14.0, 9.0, {0.1, 0.2, 0.3, 0.4, 0.0}};
   WriteCamchain(folder / "camchain.yaml", c);
   std::ifstream file(folder / "camchain.yaml");

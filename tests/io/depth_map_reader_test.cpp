@@ -57,7 +57,7 @@ TEST_F(DepthMapsTest, ReadsWhatItWrites) {
   EXPECT_EQ(first.At(2, 1), 0.0);
 }
 
-TEST_F(DepthMapsTest, ReadsWhatMovesWhereItIsTold) {
+TEST_F(DepthMapsTest, ReadsOptionalMasksOfMovingPixels) {
   const auto path = folder / "a_gt.hdf5";
   MvsecGroundTruthWriter writer(path, {{kStart, geometry::SE3()}}, {{kStart, geometry::SE3()}});
   writer.AppendDepth(kStart, {3, 2, {1, 2, 3, 4, 5, 6}, {0, 1, 0, 0, 0, 1}});
@@ -71,7 +71,7 @@ TEST_F(DepthMapsTest, ReadsWhatMovesWhereItIsTold) {
   EXPECT_FALSE(silent.IsMoving(1, 0));
 }
 
-TEST_F(DepthMapsTest, RefusesAnImpossibleMaskOfWhatMoves) {
+TEST_F(DepthMapsTest, RefusesFaultyMasksOfMovingPixels) {
   auto path = Store({1.0, 2.0});
   StoreTable(path, kMoving, {2, 3, 2}, std::vector<double>(12, 0.0));
   ExpectMentions(RefusalOf(path), {kMoving, "shape", kMaps});
@@ -93,7 +93,7 @@ TEST_F(DepthMapsTest, NothingAppearsBeforeCommit) {
   EXPECT_TRUE(std::filesystem::is_empty(folder));
 }
 
-TEST_F(DepthMapsTest, KnowsWhetherThereAreAny) {
+TEST_F(DepthMapsTest, DetectsDepthMaps) {
   const auto path = folder / "gt.hdf5";
   WriteMvsecGroundTruth(path, {{kStart, geometry::SE3()}}, {{kStart, geometry::SE3()}});
   EXPECT_FALSE(HasDepthMaps(path));
@@ -103,13 +103,13 @@ TEST_F(DepthMapsTest, KnowsWhetherThereAreAny) {
   Refusal([&] { HasDepthMaps(folder / "missing"); });
 }
 
-TEST_F(DepthMapsTest, SaysThatOnlyRectifiedMapsAreThere) {
+TEST_F(DepthMapsTest, NamesRectifiedMapsInPlaceOfRawOnes) {
   const auto path = folder / "gt.hdf5";
   StoreTable(path, "davis/left/depth_image_rect", {1, 1, 1}, {1.0});
   ExpectMentions(RefusalOf(path), {kMaps, "depth_image_rect", "rectified"});
 }
 
-TEST_F(DepthMapsTest, RefusesStampsThatDoNotFit) {
+TEST_F(DepthMapsTest, RefusesFaultyStamps) {
   EXPECT_EQ(DepthMapReader(Store({1.0, 2.0})).stamps()[1], 2 * kNsPerSecond);
   ExpectMentions(RefusalOf(Store({1.0})), {kStamps, "2 depth maps"});
   ExpectMentions(RefusalOf(Store({2.0, 1.0})), {kStamps, "row 1", "not later"});

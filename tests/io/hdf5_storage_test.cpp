@@ -220,7 +220,7 @@ TEST_F(Hdf5StorageTest, ReadsEdgeChunksThatAreExemptFromFilters) {
   }
 }
 
-TEST_F(Hdf5StorageTest, TakesTheFillValueWhereChunksWereNeverWritten) {
+TEST_F(Hdf5StorageTest, ReadsTheFillValueOfUnwrittenChunks) {
   for (const double fill : {0.0, 1.0}) {  // both are valid in every column
     const std::vector<double> rows = EventRows(MakeEvents(3000, FromSeconds(fill)));
     for (const bool compress : {false, true}) {
@@ -257,7 +257,7 @@ TEST_F(Hdf5StorageTest, TakesTheFillValueWhereChunksWereNeverWritten) {
   }
 }
 
-TEST_F(Hdf5StorageTest, TakesTheFillValueWhereNothingWasWritten) {
+TEST_F(Hdf5StorageTest, ReadsTheFillValueOfAnUnwrittenTable) {
   const double fill = 1.0;
   const std::vector<double> expected(kColumns * 1000, fill);
   for (const H5D_layout_t layout : {H5D_CHUNKED, H5D_CONTIGUOUS}) {
@@ -271,7 +271,7 @@ TEST_F(Hdf5StorageTest, TakesTheFillValueWhereNothingWasWritten) {
   }
 }
 
-TEST_F(Hdf5StorageTest, ReadsTablesThatAreNotChunked) {
+TEST_F(Hdf5StorageTest, ReadsContiguousTables) {
   const std::vector<double> rows = EventRows(MakeEvents(1500, 0));
   for (const H5D_layout_t layout : {H5D_CONTIGUOUS, H5D_COMPACT}) {
     for (const bool newest_format : {false, true}) {

@@ -38,7 +38,7 @@ TEST_F(MvsecEventsTest, ReadsWhatItWritesToTheResolutionOfADouble) {
   ExpectSame(read, events);
 }
 
-TEST_F(MvsecEventsTest, WritesInPiecesWhatItWritesAtOnce) {
+TEST_F(MvsecEventsTest, WritesTheSameBytesInPieces) {
   const events::EventColumns events = MakeEvents(70'000, 0);
   WriteMvsecEvents(folder / "whole.hdf5", events);
   {
@@ -94,7 +94,7 @@ TEST_F(MvsecEventsTest, BlocksAreWholeChunksAndBounded) {
   ExpectSame(ReadAll(large), events);
 }
 
-TEST_F(MvsecEventsTest, IntervalsHoldWhatALinearReadingFinds) {
+TEST_F(MvsecEventsTest, IntervalsEqualACutOfTheWholeFile) {
   const events::EventColumns events = MakeEvents(20'000, 0);
   const auto path = folder / "a.hdf5";
   StoreEvents(path, EventRows(events), {H5T_NATIVE_DOUBLE, {512, 4}, true});
@@ -110,7 +110,7 @@ TEST_F(MvsecEventsTest, IntervalsHoldWhatALinearReadingFinds) {
   }
 }
 
-TEST_F(MvsecEventsTest, AnIntervalReadsNothingBeforeIt) {
+TEST_F(MvsecEventsTest, IntervalReadsNothingBeforeIt) {
   const events::EventColumns events = MakeEvents(20'000, 0);
   std::vector<double> rows = EventRows(events);
   rows[4 * 100] = 1e6;
@@ -120,7 +120,7 @@ TEST_F(MvsecEventsTest, AnIntervalReadsNothingBeforeIt) {
   ExpectSame(ReadAll(path, late), Cut(events, late));
 }
 
-TEST_F(MvsecEventsTest, SaysHowLongTheRecordingIsWhenNothingIsLeft) {
+TEST_F(MvsecEventsTest, NamesTheDurationForAnEmptyInterval) {
   const auto path = folder / "a.hdf5";
   StoreEvents(path, {1, 1, 100.5, 1, 1, 1, 103, -1});
   for (const events::Interval& interval :
@@ -130,7 +130,7 @@ TEST_F(MvsecEventsTest, SaysHowLongTheRecordingIsWhenNothingIsLeft) {
   }
 }
 
-TEST_F(MvsecEventsTest, ReadsFloat32AndIntegersOnlyWhereTheirStampsAreSafe) {
+TEST_F(MvsecEventsTest, ReadsFloat32AndIntegersWithPreciseStampsOnly) {
   const events::EventColumns events = MakeEvents(1000, kEpoch);
   StoreEvents(folder / "us.hdf5", EventRows(events, 1000), {H5T_NATIVE_INT64, {}, false});
   ExpectSame(ReadAll(folder / "us.hdf5"), events);
@@ -147,7 +147,7 @@ TEST_F(MvsecEventsTest, ReadsFloat32AndIntegersOnlyWhereTheirStampsAreSafe) {
                  {"davis/left/events", "integers", "1000", "float64 seconds"});
 }
 
-TEST_F(MvsecEventsTest, TakesZeroAsDarker) {
+TEST_F(MvsecEventsTest, ReadsZeroAsDarker) {
   StoreEvents(folder / "a.hdf5", {1, 2, 0.5, 0, 3, 4, 0.75, 1, 3, 4, 0.75, -1});
   EXPECT_EQ(ReadAll(folder / "a.hdf5").polarity, (std::vector<std::int8_t>{-1, 1, -1}));
 }
@@ -162,7 +162,7 @@ TEST_F(MvsecEventsTest, RefusesABadRowAndNamesIt) {
       {{nan, 1, 3, 1}, {"nan"}},
       {{1, inf, 3, 1}, {"inf"}},
       {{1.5, 1, 3, 1}, {"1.5", "not whole"}},
-      {{346, 1, 3, 1}, {"(346, 1)", "346 x 260", "do not fit together"}},
+      {{346, 1, 3, 1}, {"(346, 1)", "346 x 260", "give the calibration of this recording"}},
       {{1, 260, 3, 1}, {"(1, 260)"}},
       {{-1, 0, 3, 1}, {"(-1, 0)"}},
       {{1, 1, 3, 2}, {"polarity 2"}},
@@ -180,7 +180,7 @@ TEST_F(MvsecEventsTest, RefusesABadRowAndNamesIt) {
   }
 }
 
-TEST_F(MvsecEventsTest, SeesTimeRunBackwardsBetweenBlocks) {
+TEST_F(MvsecEventsTest, RefusesTimeThatRunsBackwardsBetweenBlocks) {
   std::vector<double> rows;
   for (int i = 0; i < 65'536; ++i) rows.insert(rows.end(), {1, 1, 10.0, 1});
   rows.insert(rows.end(), {1, 1, 9.0, 1});
@@ -246,7 +246,7 @@ TEST_F(MvsecEventsTest, NamesAFilterThatIsNotInstalled) {
   ExpectMentions(Refusal([&] { ReadAll(path); }), {"davis/left/events", "filter 399", "HDF5_PLUGIN_PATH"});
 }
 
-TEST_F(MvsecEventsTest, ReadsLzf) {
+TEST_F(MvsecEventsTest, ReadsLzfAndRefusesDamagedStreams) {
   // Two events (2, 2, 2.0, 1): as doubles 00*7 40 three times, 00*6 f0 3f, then all of it once more.
   const std::vector<unsigned char> stream = {
       7,    0,    0,    0, 0, 0, 0, 0, 0x40,  // eight literals
@@ -260,21 +260,26 @@ TEST_F(MvsecEventsTest, ReadsLzf) {
   EXPECT_EQ(events.t, (std::vector<TimeNs>{2 * kNsPerSecond, 2 * kNsPerSecond}));
   EXPECT_EQ(events.x, (std::vector<std::uint16_t>{2, 2}));
   EXPECT_EQ(events.polarity, (std::vector<std::int8_t>{1, 1}));
-  for (const std::vector<unsigned char>& broken :
-       {std::vector<unsigned char>{7, 0}, {0xe0}, {0xe0, 1}, {0, 0, 0x20, 9}, {0, 0}}) {
+  for (const std::vector<unsigned char>& broken : {std::vector<unsigned char>{7, 0},
+                                                   {0xe0},
+                                                   {0xe0, 1},
+                                                   {0, 0, 0x20, 9},
+                                                   {0, 0},
+                                                   {0xe0, 255, 0},
+                                                   {0, 0, 0xe0, 255, 0}}) {
     StoreFiltered(folder / "b.hdf5", 32000, broken);
     ExpectMentions(Refusal([&] { ReadAll(folder / "b.hdf5"); }), {"b.hdf5: davis/left/events"});
   }
 }
 
-TEST_F(MvsecEventsTest, TellsHdf5ByItsContent) {
+TEST_F(MvsecEventsTest, DetectsHdf5ByContent) {
   WriteMvsecEvents(folder / "events.txt", MakeEvents(10, 0));
   EXPECT_EQ(ReadAll(folder / "events.txt").size(), 10u);
   Write("text.hdf5", "0.1 1 1 1\n");
   EXPECT_EQ(ReadAll(folder / "text.hdf5").size(), 1u);
 }
 
-TEST_F(MvsecEventsTest, SaysWhereItCannotWrite) {
+TEST_F(MvsecEventsTest, NamesThePathThatCannotBeWritten) {
   Write("file", "x");
   EXPECT_NE(Refusal([&] { WriteMvsecEvents(folder / "file" / "a.hdf5", MakeEvents(1, 0)); }, ErrorKind::kOutput), "");
 }

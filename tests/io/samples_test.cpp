@@ -40,7 +40,7 @@ TEST_F(SamplesTest, Street) {
   EXPECT_EQ(ReadGroundTruth(*files.ground_truth, GroundTruthSource::kCartographer).size(), 241u);
 }
 
-TEST_F(SamplesTest, StreetIntervalIsTheSameAsCuttingIt) {
+TEST_F(SamplesTest, StreetIntervalEqualsACut) {
   const auto path = data / "street_12s" / "street_data.hdf5";
   const events::Interval start{0, 300'000'000};
   const events::Interval part{100'000'000, 250'000'000};

@@ -34,7 +34,7 @@ TEST_F(TextEventsTest, ReadsWhatWasWrittenInSeveralBlocks) {
   EXPECT_EQ(OpenEvents(path, {}, 346, 260)->last_stamp(), events.t.back());
 }
 
-TEST_F(TextEventsTest, ReadsEveryWritingOfALine) {
+TEST_F(TextEventsTest, ReadsEveryFormOfALine) {
   const auto path = Write("events.txt",
                           "# t x y p\n"
                           "\n"
@@ -66,7 +66,7 @@ TEST_F(TextEventsTest, KeepsEveryDigitOfAStamp) {
   }
 }
 
-TEST_F(TextEventsTest, IntervalsHoldWhatALinearReadingFinds) {
+TEST_F(TextEventsTest, IntervalsEqualACutOfTheWholeFile) {
   const events::EventColumns events = MakeEvents(20'000, 3'811'000);
   const auto path = Write("events.txt", "# a comment\n" + ToText(events) + "\n# the end\n");
   const TimeNs length = events.t.back() - events.t.front();
@@ -83,7 +83,7 @@ TEST_F(TextEventsTest, IntervalsHoldWhatALinearReadingFinds) {
   }
 }
 
-TEST_F(TextEventsTest, AnIntervalReadsNothingBeforeIt) {
+TEST_F(TextEventsTest, IntervalReadsNothingBeforeIt) {
   const events::EventColumns events = MakeEvents(100'000, 0);
   std::string text = ToText(events);
   const std::size_t early = text.find('\n', text.size() / 10) + 1;
@@ -94,7 +94,7 @@ TEST_F(TextEventsTest, AnIntervalReadsNothingBeforeIt) {
   Refusal([&] { ReadAll(path); });
 }
 
-TEST_F(TextEventsTest, SaysHowLongTheRecordingIsWhenNothingIsLeft) {
+TEST_F(TextEventsTest, NamesTheDurationForAnEmptyInterval) {
   const auto path = Write("events.txt", "1.5 1 1 0\n2 1 1 0\n4.25 1 1 1\n");
   for (const events::Interval& interval :
        {events::Interval{3 * kNsPerSecond, {}}, events::Interval{kNsPerSecond, kNsPerSecond},
@@ -124,8 +124,9 @@ TEST_F(TextEventsTest, RefusesTimeThatRunsBackwards) {
 
 TEST_F(TextEventsTest, RefusesPixelsOffTheSensor) {
   for (const std::string line : {"0.3 346 0 1", "0.3 0 260 1", "0.3 -1 0 1", "0.3 70000 0 1"}) {
-    ExpectMentions(RefusalOf("0.1 1 1 0\n" + line + "\n0.4 1 1 1\n"),
-                   {"bad.txt:2: ", "346 x 260", "do not fit together", line.substr(4, line.find(' ', 4) - 4)});
+    ExpectMentions(
+        RefusalOf("0.1 1 1 0\n" + line + "\n0.4 1 1 1\n"),
+        {"bad.txt:2: ", "346 x 260", "give the calibration of this recording", line.substr(4, line.find(' ', 4) - 4)});
   }
 }
 

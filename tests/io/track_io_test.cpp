@@ -33,7 +33,7 @@ TEST_F(TracksTest, ReadsWhatItWrites) {
   EXPECT_TRUE(ReadTracks(folder / "out" / "tracks.txt") == tracks);
 }
 
-TEST_F(TracksTest, PartByPartGivesTheSameFile) {
+TEST_F(TracksTest, WritesTheSameBytesInPieces) {
   const events::Tracks tracks = {
       {0, kNsPerSecond, 1.25, 2.5}, {7, kNsPerSecond, 3, 4}, {0, 2 * kNsPerSecond, 1.5, 2.75}};
   WriteTracks(folder / "whole.txt", tracks, {"a comment"});
@@ -51,7 +51,7 @@ TEST_F(TracksTest, PartByPartGivesTheSameFile) {
   EXPECT_FALSE(std::filesystem::exists(folder / "abandoned.txt"));
 }
 
-TEST_F(TracksTest, RoundedTracksAreWhatTheFileGivesBack) {
+TEST_F(TracksTest, RoundedTracksEqualThoseOfTheFile) {
   events::Tracks tracks;
   for (int i = 0; i < 20000; ++i) tracks.push_back({i, kNsPerSecond, 345.0 * i / 20000.0 + 1e-5, 0.00005 * i});
   RoundAsWritten(&tracks);

@@ -5,19 +5,19 @@
 
 namespace evo {
 
-/// What went wrong, as the exit code of the process.
+/// The category of an error; its value is the exit code of the process.
 enum class ErrorKind {
-  kUsage = 2,                ///< the command line does not make sense
+  kUsage = 2,                ///< the command line is wrong
   kConfiguration = 3,        ///< a parameter is unknown, of the wrong type or out of range
   kInput = 4,                ///< an input is missing, unreadable or corrupt
   kNothingToDo = 5,          ///< no overlap, an empty interval
   kTrackingLost = 6,         ///< no trajectory could be estimated
-  kDegenerateAlignment = 7,  ///< the trajectories do not determine the alignment that was asked for
+  kDegenerateAlignment = 7,  ///< the trajectories do not determine the requested alignment
   kOutput = 8,               ///< a result cannot be written
 };
 
-/// The one exception that stages throw. Its message is one line that names the file, the place in it (line, offset or
-/// data set path) and what the user can do about it.
+/// The exception of all stages. Its message is one line that names the file, the place in it (line, offset or data set)
+/// and the remedy.
 class Error : public std::runtime_error {
  public:
   Error(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}

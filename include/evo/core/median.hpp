@@ -6,10 +6,10 @@
 
 namespace evo {
 
-/// Times the median norm of 2-d Gaussian errors it is the standard deviation of a coordinate: a unit one has 1.1774.
+/// Ratio of a coordinate's standard deviation to the median norm of 2-D Gaussian errors: 1 / sqrt(2 ln 2).
 inline constexpr double kMedianNormToSigma = 0.8493;
 
-/// The upper one of the two middle values of an even number; 0 for none.
+/// The median; the upper one of the two middle values for an even count, 0 for no values.
 inline double Median(std::vector<double> values) {
   if (values.empty()) return 0.0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

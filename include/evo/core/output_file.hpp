@@ -7,11 +7,11 @@
 
 namespace evo {
 
-/// A name beside a result's final place for libraries that write the file themselves; Commit() moves the finished file
-/// into place. Failures are Errors of kind kOutput.
+/// A temporary path beside a result's final one, for libraries that write the file themselves; Commit() moves the
+/// finished file into place. Every failure is an Error of kind kOutput.
 class PendingPath {
  public:
-  /// Parent folders of `path` are created.
+  /// Creates the parent folders of `path`.
   explicit PendingPath(std::filesystem::path path);
   /// Removes the temporary file unless Commit() succeeded.
   ~PendingPath();
@@ -28,7 +28,7 @@ class PendingPath {
   bool committed_ = false;
 };
 
-/// A result file that appears whole or not at all: written beside its final place, moved there by Commit().
+/// A result file that appears whole on Commit() or not at all; before, it is a temporary file beside its final place.
 /// Every failure (no such folder, no permission, full disk) is an Error of kind kOutput.
 class OutputFile {
  public:
@@ -36,16 +36,16 @@ class OutputFile {
   explicit OutputFile(std::filesystem::path path);
 
   std::ostream& stream() { return stream_; }
-  /// Throws if what was written so far did not fit: no need to go on then.
+  /// Throws if the disk is full, so that a long run stops at once.
   void Check() const;
   void Commit();
 
  private:
   PendingPath pending_;
-  std::ofstream stream_;  // closed before pending_ removes what is left
+  std::ofstream stream_;  // closed before pending_ removes the file
 };
 
-/// A whole result file in one call.
+/// Writes a whole result file.
 void WriteText(const std::filesystem::path& path, const std::string& text);
 
 }  // namespace evo

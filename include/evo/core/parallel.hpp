@@ -10,11 +10,11 @@
 
 namespace evo {
 
-/// A fixed team of threads. Work is cut by index, every index writes only its own results, so the outcome does not
-/// depend on how many threads there are or in which order they run.
+/// A fixed number of threads. Work is split by index and every index writes only its own results, so that the outcome
+/// does not depend on the number of threads or their order.
 class ThreadPool {
  public:
-  /// `threads` >= 1 counts the calling thread; 0 means one for each processor.
+  /// `threads` >= 1 counts the calling thread; 0 means one per processor.
   explicit ThreadPool(int threads);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
@@ -22,8 +22,8 @@ class ThreadPool {
 
   int size() const { return static_cast<int>(workers_.size()) + 1; }
 
-  /// Calls `work(i)` for every i in [0, count) and returns when all are done. `chunk` indices are handed out at a time.
-  /// The first exception thrown (by lowest index) is rethrown here.
+  /// Calls `work(i)` for every i in [0, count) and returns after the last call. Threads take `chunk` indices at a time.
+  /// Rethrows the exception of the lowest index.
   void ForEach(std::size_t count, const std::function<void(std::size_t)>& work, std::size_t chunk = 1);
 
  private:

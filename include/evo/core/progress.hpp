@@ -5,7 +5,7 @@
 
 namespace evo {
 
-/// A one-line progress bar on stderr; silent where stderr is not a terminal or when disabled.
+/// A one-line progress bar on stderr; prints nothing if stderr is no terminal or `enabled` is false.
 class Progress {
  public:
   Progress(std::string label, bool enabled);
@@ -13,7 +13,7 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// `fraction` of the work done, in [0, 1]; cheap to call often.
+  /// Redraws the bar at most ten times a second. `fraction` of the work is done, in [0, 1].
   void Update(double fraction);
 
  private:

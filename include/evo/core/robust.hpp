@@ -2,8 +2,8 @@
 
 namespace evo {
 
-// Weights of iteratively reweighted least squares (P. J. Huber: Robust Statistics, 1981). Errors and widths share a
-// unit.
+// Weights of iteratively reweighted least squares (P. J. Huber: Robust Statistics, 1981). An error and its width have
+// the same unit.
 
 /// At these widths, in standard deviations, each loss keeps 95 % of least squares' efficiency under Gaussian noise.
 inline constexpr double kHuberWidth = 1.345;
@@ -16,7 +16,7 @@ inline double CauchyWeight(double normalized_squared) { return 1.0 / (1.0 + norm
 /// Weight of Huber's loss for an `error` >= 0.
 inline double HuberWeight(double error, double width) { return error <= width ? 1.0 : width / error; }
 
-/// Weight of Tukey's biweight loss for an `error` >= 0: none from the width on.
+/// Weight of Tukey's biweight loss for an `error` >= 0; 0 from the width on.
 inline double TukeyWeight(double error, double width) {
   if (error >= width) return 0.0;
   const double inside = 1.0 - error * error / (width * width);

@@ -101,7 +101,7 @@ class EventHistory {
     std::int32_t offset;       // ns from the patch's reference instant to the slice's begin
     std::int32_t first, last;  // ns since the slice's begin, of the window
   };
-  static constexpr TimeNs kSlice = 10'000'000;  // ns: a window of the tracker spans one to eight of them
+  static constexpr TimeNs kSlice = 10'000'000;  // ns; the tracker's windows last 4 to 80 ms
 
   std::size_t TileIndex(unsigned x, unsigned y) const { return y / kTilePx * columns_ + x / kTilePx; }
   /// Adds events [begin, end), all of which lie in it, to the slice that begins at `t`: the newest one or a new one.

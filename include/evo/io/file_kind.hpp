@@ -5,7 +5,7 @@
 
 namespace evo::io {
 
-/// What a file is, told by its first bytes and lines, never by its name.
+/// The kind of a file by its first bytes and lines, never by its name.
 enum class FileKind {
   kHdf5,
   kEventText,        ///< `t x y p`
@@ -21,14 +21,14 @@ enum class FileKind {
   kFolder,
 };
 
-/// "a track file", "a folder": for messages.
+/// The kind in a message, such as "a track file".
 const char* KindName(FileKind kind);
 
-/// Throws Error (kInput) if there is no such file or it cannot be read.
+/// Throws Error (kInput) if the file is missing or unreadable.
 FileKind DetectKind(const std::filesystem::path& path);
 
-/// Throws Error (kInput) unless the file is of one of the `accepted` kinds. `expected` says in the message what to give
-/// instead. Text of no known kind passes: the reader of it names the line that is wrong.
+/// Throws Error (kInput) unless the file is of an `accepted` kind; the message names what is `expected`. Text of an
+/// unknown kind passes, since its reader names the faulty line.
 void RequireKind(const std::filesystem::path& path, std::initializer_list<FileKind> accepted, const char* expected);
 
 }  // namespace evo::io

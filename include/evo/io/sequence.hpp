@@ -12,9 +12,9 @@ struct SequenceFiles {
   std::optional<std::filesystem::path> ground_truth;
 };
 
-/// Resolves what the user gave as events. A file stands for itself alone. In a folder: UZH's events.txt with calib.txt
-/// and groundtruth.txt where they exist, or the only MVSEC *_data.hdf5 with the *_gt.hdf5 of that name and the only
-/// camchain*.yaml. Throws Error (kInput) if there is no such file or the folder holds no, or more than one, recording.
+/// Finds the files of a recording from the path given as events. A file stands for itself. A folder holds UZH's
+/// events.txt with optional calib.txt and groundtruth.txt, or one MVSEC *_data.hdf5 with an optional *_gt.hdf5 of the
+/// same name and one optional camchain*.yaml. Throws Error (kInput) unless there is exactly one recording.
 SequenceFiles FindSequence(const std::filesystem::path& path);
 
 }  // namespace evo::io

@@ -13,7 +13,7 @@ class UzhEventWriter {
  public:
   explicit UzhEventWriter(const std::filesystem::path& path) : file_(path) {}
 
-  /// Events in order of time, after those appended before.
+  /// Appends events in order of time.
   void Append(const events::EventColumns& events);
   void Commit() { file_.Commit(); }
 

@@ -18,7 +18,7 @@ namespace evo::io {
 namespace {
 
 constexpr ImageSize kUzhSensor{240, 180};  // DAVIS240C
-constexpr int kLargestSide = 65536;        // what the event columns hold
+constexpr int kMaxSide = 65536;            // px; the event columns hold 16 bits
 
 Error CalibrationError(const std::string& where, const std::string& what) {
   return {ErrorKind::kInput, where + ": " + what};
@@ -26,7 +26,7 @@ Error CalibrationError(const std::string& where, const std::string& what) {
 
 /// `where` names the file and line of the intrinsics.
 void CheckCalibration(const geometry::Calibration& c, const std::string& where) {
-  if (c.width < 1 || c.height < 1 || c.width > kLargestSide || c.height > kLargestSide) {
+  if (c.width < 1 || c.height < 1 || c.width > kMaxSide || c.height > kMaxSide) {
     throw CalibrationError(
         where, "the sensor of " + std::to_string(c.width) + " x " + std::to_string(c.height) + " px is impossible");
   }
@@ -106,7 +106,7 @@ class CamchainReader {
     std::copy(coefficients.begin(), coefficients.end(), c.coefficients.begin());
     const auto resolution = Numbers("resolution", 2);
     for (const double side : resolution) {
-      if (!(side >= 1.0 && side <= kLargestSide) || side != static_cast<int>(side)) {
+      if (!(side >= 1.0 && side <= kMaxSide) || side != static_cast<int>(side)) {
         throw CalibrationError(Place("resolution"), FormatNumber(side) + " px is not the side of a sensor");
       }
     }

@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "io/events/event_reader_parts.hpp"
+#include "io/events/event_errors.hpp"
+#include "io/events/event_readers.hpp"
 #include "io/events/mvsec_events.hpp"
 #include "io/hdf5/hdf5.hpp"
 
@@ -12,10 +13,10 @@ namespace {
 class MvsecEventReader : public events::EventReader {
  public:
   MvsecEventReader(const std::filesystem::path& path, const events::Interval& interval, int width, int height)
-      : file_(path), events_(file_), width_(width), height_(height), first_stamp_(events_.StampAt(0)) {
-    begin_ = interval.from > 0 ? events_.FirstAtOrAfter(Later(first_stamp_, interval.from)) : 0;
-    end_ = interval.to ? events_.FirstAtOrAfter(Later(first_stamp_, *interval.to)) : events_.rows();
-    if (begin_ >= end_) throw NothingInInterval(path, interval, first_stamp_, last_stamp());
+      : file_(path), events_(file_), width_(width), height_(height), first_stamp_(events_.ReadStamp(0)) {
+    begin_ = interval.from > 0 ? events_.FindRow(SaturatedSum(first_stamp_, interval.from)) : 0;
+    end_ = interval.to ? events_.FindRow(SaturatedSum(first_stamp_, *interval.to)) : events_.rows();
+    if (begin_ >= end_) throw EmptyIntervalError(path, interval, first_stamp_, last_stamp());
     row_ = begin_;
   }
 
@@ -33,7 +34,7 @@ class MvsecEventReader : public events::EventReader {
   }
 
   TimeNs first_stamp() const override { return first_stamp_; }
-  TimeNs last_stamp() const override { return events_.StampAt(events_.rows() - 1); }
+  TimeNs last_stamp() const override { return events_.ReadStamp(events_.rows() - 1); }
   double progress() const override { return static_cast<double>(row_ - begin_) / static_cast<double>(end_ - begin_); }
 
  private:
@@ -44,7 +45,7 @@ class MvsecEventReader : public events::EventReader {
   TimeNs first_stamp_;
   hsize_t begin_ = 0;
   hsize_t end_ = 0;
-  hsize_t row_ = 0;  ///< the next to read
+  hsize_t row_ = 0;  ///< next row to read
   TimeNs previous_ = std::numeric_limits<TimeNs>::min();
 };
 

@@ -1,25 +1,23 @@
 #include "io/events/mvsec_events.hpp"
-#include "evo/core/number.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 
-#include "io/events/event_reader_parts.hpp"
-#include "io/text_lines.hpp"
+#include "evo/core/number.hpp"
+#include "io/events/event_errors.hpp"
 
 namespace evo::io {
 
 namespace {
 
-constexpr hsize_t kBlockRows = 65536;  // at least, in whole chunks
-constexpr double kLargestNs = 9e18;    // what int64 holds
-constexpr double kCoarsestStampS = 1e-3;
-constexpr double kFirstEpochS = 5e8;  // 1985: a stamp counted from 1970 is told from one counted from zero
-constexpr double kLastEpochS = 8e9;   // 2223
+constexpr double kMaxNs = 9e18;          // int64 holds 9.2e18
+constexpr double kMaxStampStepS = 1e-3;  // s; coarser stamps lose the motion within a window
+constexpr double kMinEpochS = 5e8;       // 1985; a smaller stamp counts from the start of the recording
+constexpr double kMaxEpochS = 8e9;       // 2223
 
-/// FromSeconds without its calls to the mathematics library; `seconds` must be in range.
+/// FromSeconds() without calls to the mathematics library; `seconds` must be in range.
 TimeNs SecondsToNs(double seconds) {
   auto whole = static_cast<TimeNs>(seconds);
   whole -= static_cast<double>(whole) > seconds ? 1 : 0;
@@ -29,21 +27,21 @@ TimeNs SecondsToNs(double seconds) {
 
 std::string Row(hsize_t row) { return " row " + std::to_string(row) + ": "; }
 
-std::string NoTime(double stamp) { return "the stamp " + FormatNumber(stamp) + " is not a time"; }
+std::string NotATime(double stamp) { return "the stamp " + FormatNumber(stamp) + " is not a time"; }
 
 bool IsPolarity(double p) { return (p == 1.0) | (p == 0.0) | (p == -1.0); }
 
-// Added to a number below 2^51 it leaves the nearest integer in the lowest bits: a conversion that vectorises.
+// Added to a number below 2^51, it leaves the nearest integer in the lowest bits: a conversion that vectorises.
 constexpr double kToInteger = 0x1p52;
 
-/// False if one is not a whole number in [0, size).
+/// Returns false if a value is not a whole number in [0, size).
 bool ConvertCoordinates(const double* values, std::size_t count, int size, std::uint16_t* __restrict coordinates) {
   const auto last = static_cast<std::uint64_t>(size - 1);
-  std::int64_t outside = 0;  // negative if there was one
-  std::int64_t broken = 0;   // not zero if there was one
+  std::int64_t outside = 0;  // negative if a value is out of range
+  std::int64_t broken = 0;   // not zero if a value is not whole
   for (std::size_t i = 0; i < count; ++i) {
     const double shifted = values[i] + kToInteger;
-    // Without a sign, since it may overflow.
+    // Unsigned, since the difference may overflow.
     const std::uint64_t pixel = std::bit_cast<std::uint64_t>(shifted) - std::bit_cast<std::uint64_t>(kToInteger);
     outside |= static_cast<std::int64_t>(pixel | (last - pixel));
     broken |= std::bit_cast<std::int64_t>((shifted - kToInteger) - values[i]);
@@ -52,7 +50,7 @@ bool ConvertCoordinates(const double* values, std::size_t count, int size, std::
   return outside >= 0 && broken == 0;
 }
 
-/// False if one is none of -1, 0 and 1.
+/// Returns false if a value is none of -1, 0 and 1.
 bool ConvertPolarities(const double* values, std::size_t count, std::int8_t* __restrict polarities) {
   std::uint64_t broken = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -87,49 +85,43 @@ MvsecEvents::StampUnit MvsecEvents::FindUnit() const {
   const double first = table().ReadElement(0, 2);
   for (const TimeNs ns_per_tick : {TimeNs{1}, TimeNs{1000}}) {
     const double seconds = first * static_cast<double>(ns_per_tick) * 1e-9;
-    if (seconds >= kFirstEpochS && seconds <= kLastEpochS) return {false, ns_per_tick};
+    if (seconds >= kMinEpochS && seconds <= kMaxEpochS) return {false, ns_per_tick};
   }
   throw table().Failure(" holds integers, and the unit of its stamps (first: " + FormatNumber(first) +
                         ") cannot be told; store the stamps as float64 seconds");
 }
 
-/// A float32 holds an epoch stamp to two minutes: such a file has lost its times.
+/// A float32 resolves an epoch stamp to two minutes: such a file has lost its times.
 void MvsecEvents::CheckResolution() const {
   if (table().is_integer() || table().element_bytes() >= sizeof(double)) return;
   const auto last = static_cast<float>(std::abs(table().ReadElement(rows() - 1, 2)));
   const double step = std::nextafter(last, HUGE_VALF) - last;
-  if (std::isfinite(last) && step > kCoarsestStampS) {
+  if (std::isfinite(last) && step > kMaxStampStepS) {
     throw table().Failure(" holds float32 numbers, which keep its stamps only to " + FormatNumber(step) +
                           " s; store them as float64");
   }
 }
 
-hsize_t MvsecEvents::block_rows() const {
-  const hsize_t chunk = std::max<hsize_t>(table().chunk_rows(), 1);
-  constexpr hsize_t kLargest = hdf5::ColumnReader::kLargestChunkRows;
-  return chunk > kLargest ? kLargest : (kBlockRows + chunk - 1) / chunk * chunk;
-}
-
 bool MvsecEvents::InRange(double stamp) const {
-  return std::abs(stamp) < (unit_.seconds ? kLargestNs * 1e-9 : kLargestNs / static_cast<double>(unit_.ns_per_tick));
+  return std::abs(stamp) < (unit_.seconds ? kMaxNs * 1e-9 : kMaxNs / static_cast<double>(unit_.ns_per_tick));
 }
 
 TimeNs MvsecEvents::ToNs(double stamp) const {
   return unit_.seconds ? SecondsToNs(stamp) : static_cast<TimeNs>(stamp) * unit_.ns_per_tick;
 }
 
-TimeNs MvsecEvents::StampAt(hsize_t row) const {
+TimeNs MvsecEvents::ReadStamp(hsize_t row) const {
   const double stamp = table().ReadElement(row, 2);
-  if (!InRange(stamp)) throw table().Failure(Row(row) + NoTime(stamp));
+  if (!InRange(stamp)) throw table().Failure(Row(row) + NotATime(stamp));
   return ToNs(stamp);
 }
 
-hsize_t MvsecEvents::FirstAtOrAfter(TimeNs target) const {
+hsize_t MvsecEvents::FindRow(TimeNs target) const {
   hsize_t low = 0;
   hsize_t high = rows();
   while (low < high) {
     const hsize_t middle = low + (high - low) / 2;
-    if (StampAt(middle) < target) {
+    if (ReadStamp(middle) < target) {
       low = middle + 1;
     } else {
       high = middle;
@@ -142,7 +134,7 @@ void MvsecEvents::Read(hsize_t first, std::size_t count, TimeNs previous, int wi
                        events::EventColumns* block) {
   events_.Read(first, count, &values_);
   block->resize(count);
-  // The passes have no branches: which event is at fault is looked up only when there is one.
+  // The passes have no branches; the faulty event is looked up only if there is one.
   if (ConvertStamps(count, previous, block) && ConvertPixels(count, width, height, block)) return;
   for (std::size_t i = 0; i < count; ++i) {
     const std::array<double, 4> event{values_[i], values_[count + i], values_[2 * count + i], values_[3 * count + i]};
@@ -174,12 +166,12 @@ bool MvsecEvents::ConvertPixels(std::size_t count, int width, int height, events
          ConvertCoordinates(y, count, height, block->y.data()) && ConvertPolarities(p, count, block->polarity.data());
 }
 
-/// What is wrong with one row, in the order in which a reader would want to know; empty if nothing is.
+/// The fault of one row for a message; empty if there is none. Time comes first, since it orders the table.
 std::string MvsecEvents::Fault(const std::array<double, 4>& event, TimeNs previous, int width, int height) const {
   const double x = event[0];
   const double y = event[1];
-  if (!InRange(event[2])) return NoTime(event[2]);
-  if (ToNs(event[2]) < previous) return BackwardsMessage(previous, ToNs(event[2]));
+  if (!InRange(event[2])) return NotATime(event[2]);
+  if (ToNs(event[2]) < previous) return TimeBackwardsMessage(previous, ToNs(event[2]));
   if (!std::isfinite(x + y) || x != std::floor(x) || y != std::floor(y)) {
     return "the pixel (" + FormatNumber(x) + ", " + FormatNumber(y) + ") is not whole";
   }

@@ -20,16 +20,17 @@ class MvsecEvents {
   explicit MvsecEvents(const hdf5::File& file);
 
   hsize_t rows() const { return table().shape()[0]; }
-  /// Reads are fastest in pieces of so many rows, at multiples of it.
-  hsize_t block_rows() const;
-  TimeNs StampAt(hsize_t row) const;
-  /// By bisection; rows() if there is none.
-  hsize_t FirstAtOrAfter(TimeNs target) const;
-  /// Events [first, first + count), checked: none before `previous` or the one before it, all on the sensor.
+  /// Rows to read at a time, at multiples of it, so that no chunk is decoded twice.
+  hsize_t block_rows() const { return events_.block_rows(); }
+  TimeNs ReadStamp(hsize_t row) const;
+  /// The first row at or after `target`, found by bisection; rows() if there is none.
+  hsize_t FindRow(TimeNs target) const;
+  /// Reads events [first, first + count) and checks that stamps do not decrease from `previous` on and that pixels are
+  /// on the sensor of `width` x `height` px.
   void Read(hsize_t first, std::size_t count, TimeNs previous, int width, int height, events::EventColumns* block);
 
  private:
-  /// How the table's number for a time is turned into nanoseconds.
+  /// The unit of the table's stamps.
   struct StampUnit {
     bool seconds = true;
     TimeNs ns_per_tick = 1;  ///< if not seconds

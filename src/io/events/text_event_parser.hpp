@@ -20,11 +20,11 @@ struct TextEvent {
   std::int8_t polarity = 1;  ///< +1 brighter, -1 darker
 };
 
-/// Bytes that must be readable behind the text that ParseCommonLine is given.
+/// Bytes that must be readable after the text given to ParseCommonLine.
 inline constexpr std::size_t kParserMargin = 8;
 
-/// Moves `p` over eight decimal digits and gives their value, or leaves both as they are. All eight at once: neighbours
-/// are joined to pairs, pairs to fours, fours to the whole.
+/// Moves `p` over eight decimal digits and sets `value`, or leaves both as they are. The digits are joined in parallel
+/// to pairs, the pairs to fours and the fours to the whole (D. Lemire: Quickly parsing eight digits, 2018).
 inline void ParseEightDigits(const char** p, std::uint64_t* value) {
   static_assert(std::endian::native == std::endian::little);
   std::uint64_t digits = 0;
@@ -37,7 +37,7 @@ inline void ParseEightDigits(const char** p, std::uint64_t* value) {
   *p += sizeof digits;
 }
 
-/// Moves `p` over decimal digits, `value` growing by each; returns how many there were.
+/// Moves `p` over decimal digits, appends them to `value` and returns their number.
 inline std::ptrdiff_t ParseDigits(const char** p, std::uint64_t* value) {
   const char* const start = *p;
   for (unsigned digit; (digit = static_cast<unsigned char>(**p) - unsigned{'0'}) < 10; ++*p) {
@@ -46,26 +46,26 @@ inline std::ptrdiff_t ParseDigits(const char** p, std::uint64_t* value) {
   return *p - start;
 }
 
-/// Reads the common writing of a line: one blank between fields, at most nine decimals, p 0, 1 or -1, ending in \n or
-/// \r\n. Returns the start of the next line, or null for anything else, which ParseEventLine then judges. `p` must
-/// point into text that ends with \n and kParserMargin more bytes: no other bound is checked. This is where the time
-/// goes that reading a recording takes.
+/// Parses a line in its common form: one blank between fields, at most nine decimals, p 0, 1 or -1, ending in \n or
+/// \r\n. Returns the start of the next line, or null for any other line, which ParseEventLine then parses. `p` must
+/// point into text that ends with \n and kParserMargin more bytes: no other bound is checked. Reading a text recording
+/// spends most of its time here.
 inline const char* ParseCommonLine(const char* p, TextEvent* event) {
   constexpr std::uint64_t kScale[] = {1000000000, 100000000, 10000000, 1000000, 100000, 10000, 1000, 100, 10, 1};
-  constexpr std::uint64_t kLargestSeconds = 9000000000;
-  constexpr std::ptrdiff_t kMostDigits = 9;
+  constexpr std::uint64_t kMaxSeconds = 9000000000;
+  constexpr std::ptrdiff_t kMaxDigits = 9;
   std::uint64_t seconds = 0;
   std::uint64_t fraction = 0;
   std::uint64_t x = 0;
   std::uint64_t y = 0;
-  const auto is_short = [](std::ptrdiff_t digits) { return digits > 0 && digits <= kMostDigits; };
+  const auto is_short = [](std::ptrdiff_t digits) { return digits > 0 && digits <= kMaxDigits; };
   const std::ptrdiff_t digits = ParseDigits(&p, &seconds);
-  if (digits == 0 || digits > kMostDigits + 1 || seconds >= kLargestSeconds) return nullptr;
+  if (digits == 0 || digits > kMaxDigits + 1 || seconds >= kMaxSeconds) return nullptr;
   if (*p == '.') {
     const char* const start = ++p;
     ParseEightDigits(&p, &fraction);
     ParseDigits(&p, &fraction);
-    if (p == start || p - start > kMostDigits) return nullptr;
+    if (p == start || p - start > kMaxDigits) return nullptr;
     fraction *= kScale[p - start];
   }
   if (*p != ' ' || !is_short(ParseDigits(&++p, &x))) return nullptr;
@@ -84,8 +84,8 @@ inline const char* ParseCommonLine(const char* p, TextEvent* event) {
   return p;
 }
 
-/// Reads any writing of a line, without its line end. Empty for a blank line or a comment (`#`); otherwise `fault` says
-/// what is wrong, or is empty.
+/// Parses a line in any form, without its line end. Empty for a blank line, a comment (`#`) or a faulty line; `fault`
+/// describes the fault and is empty otherwise.
 std::optional<TextEvent> ParseEventLine(std::string_view line, std::string* fault);
 
 }  // namespace evo::io

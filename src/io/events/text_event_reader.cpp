@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "io/byte_source.hpp"
-#include "io/events/event_reader_parts.hpp"
+#include "io/events/event_errors.hpp"
+#include "io/events/event_readers.hpp"
 #include "io/events/text_event_parser.hpp"
 #include "io/text_lines.hpp"
 
@@ -14,13 +15,13 @@ namespace evo::io {
 namespace {
 
 constexpr std::size_t kBlockEvents = 65536;
-constexpr std::size_t kBlockBytes = 24 * kBlockEvents;       // lines are 18 to 22 bytes long, so blocks come out full
-constexpr std::size_t kUsualLine = 256;                      // what a probe reads at first
-constexpr std::size_t kLongestLine = std::size_t{64} << 10;  // a comment, at most
+constexpr std::size_t kBlockBytes = 24 * kBlockEvents;   // lines are 18 to 22 bytes long, so blocks come out full
+constexpr std::size_t kTypicalLine = 256;                // bytes of the first read at a place
+constexpr std::size_t kMaxLine = std::size_t{64} << 10;  // bytes; a longer line is no event and no comment
 
 struct PlacedEvent {
-  std::int64_t offset = 0;  ///< of its line
-  std::int64_t next = 0;    ///< of the line after it
+  std::int64_t offset = 0;  ///< byte at which its line starts
+  std::int64_t next = 0;    ///< byte at which the next line starts
   TextEvent event;
 };
 
@@ -31,9 +32,9 @@ class TextEventReader : public events::EventReader {
     const auto first = EventAtOrAfter(0);
     if (!first) throw Error(ErrorKind::kInput, path.string() + ": holds no events; expected lines 't x y p'");
     first_stamp_ = first->event.t;
-    begin_ = interval.from > 0 ? FirstAtOrAfter(Later(first_stamp_, interval.from)) : first->offset;
-    end_ = interval.to ? FirstAtOrAfter(Later(first_stamp_, *interval.to)) : file_.size();
-    if (begin_ >= end_) throw NothingInInterval(path, interval, first_stamp_, last_stamp());
+    begin_ = interval.from > 0 ? FirstAtOrAfter(SaturatedSum(first_stamp_, interval.from)) : first->offset;
+    end_ = interval.to ? FirstAtOrAfter(SaturatedSum(first_stamp_, *interval.to)) : file_.size();
+    if (begin_ >= end_) throw EmptyIntervalError(path, interval, first_stamp_, last_stamp());
     offset_ = begin_;
   }
 
@@ -52,7 +53,7 @@ class TextEventReader : public events::EventReader {
 
   TimeNs first_stamp() const override { return first_stamp_; }
   TimeNs last_stamp() const override {
-    for (std::int64_t back = kUsualLine;; back *= 2) {
+    for (std::int64_t back = kTypicalLine;; back *= 2) {
       TimeNs last = first_stamp_;
       auto found = EventAtOrAfter(std::max<std::int64_t>(file_.size() - back, 0));
       for (; found; found = EventAtOrAfter(found->next)) last = found->event.t;
@@ -68,7 +69,7 @@ class TextEventReader : public events::EventReader {
     return {ErrorKind::kInput, file_.path().string() + ":" + std::to_string(LineNumber(offset)) + ": " + what};
   }
 
-  /// Counted only when there is something to complain of, since bisection skips lines unseen.
+  /// Counted only for an error, since bisection skips lines unseen.
   std::size_t LineNumber(std::int64_t offset) const {
     std::vector<char> buffer(kBlockBytes);
     std::size_t lines = 1;
@@ -80,10 +81,10 @@ class TextEventReader : public events::EventReader {
     return lines;
   }
 
-  /// From `offset` to the end of the line, without the \n.
+  /// The text from `offset` to the end of the line, without the \n.
   std::string ReadLine(std::int64_t offset) const {
     std::string line;
-    for (std::size_t size = kUsualLine; size <= kLongestLine; size *= kLongestLine / kUsualLine) {
+    for (std::size_t size = kTypicalLine; size <= kMaxLine; size *= kMaxLine / kTypicalLine) {
       line.resize(size);
       line.resize(file_.Read(offset, size, line.data()));
       const std::size_t end = line.find('\n');
@@ -124,7 +125,7 @@ class TextEventReader : public events::EventReader {
     return found ? found->offset : file_.size();
   }
 
-  /// Fills buffer_ with as many whole lines from offset_ on as it holds, the last one ended by a \n in any case.
+  /// Fills buffer_ with whole lines from offset_ on and ends the last one with a \n.
   void ReadLines() {
     const auto wanted = std::min(kBlockBytes, static_cast<std::size_t>(end_ - offset_));
     buffer_.resize(kBlockBytes + 1 + kParserMargin);
@@ -179,7 +180,7 @@ class TextEventReader : public events::EventReader {
     return parsed.has_value();
   }
 
-  /// Throws at the first event in buffer_ that is not valid; all its lines parse.
+  /// Throws at the first invalid event of buffer_, whose lines all parse.
   void ThrowFirstFault() const {
     TimeNs previous = previous_;
     const char* const end = buffer_.data() + length_;
@@ -187,7 +188,7 @@ class TextEventReader : public events::EventReader {
       const std::int64_t offset = offset_ + (p - buffer_.data());
       TextEvent event;
       if (!ParseRareLine(&p, &event)) continue;
-      if (event.t < previous) throw Failure(offset, BackwardsMessage(previous, event.t));
+      if (event.t < previous) throw Failure(offset, TimeBackwardsMessage(previous, event.t));
       if (event.x < 0 || event.x >= width_ || event.y < 0 || event.y >= height_) {
         const auto x = static_cast<double>(event.x);
         const auto y = static_cast<double>(event.y);
@@ -203,10 +204,10 @@ class TextEventReader : public events::EventReader {
   TimeNs first_stamp_ = 0;
   std::int64_t begin_ = 0;
   std::int64_t end_ = 0;
-  std::int64_t offset_ = 0;  ///< of the next line to read
+  std::int64_t offset_ = 0;  ///< byte at which the next line starts
   TimeNs previous_ = std::numeric_limits<TimeNs>::min();
   std::vector<char> buffer_;
-  std::size_t length_ = 0;  ///< bytes of buffer_ that are whole lines and, once parsed, in the block
+  std::size_t length_ = 0;  ///< bytes of whole lines in buffer_; after parsing, of those in the block
 };
 
 }  // namespace

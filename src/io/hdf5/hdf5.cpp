@@ -11,7 +11,7 @@ namespace evo::io::hdf5 {
 namespace {
 
 constexpr hid_t kDefault = H5P_DEFAULT;
-constexpr std::size_t kListedNames = 8;
+constexpr std::size_t kMaxListedNames = 8;
 constexpr std::size_t kCacheSlots = 521;  // HDF5's own default
 
 herr_t CollectDataset(hid_t group, const char* name, const H5L_info_t*, void* names) {
@@ -38,7 +38,7 @@ Handle& Handle::operator=(Handle&& other) noexcept {
 bool Handle::Close() { return id_ < 0 || close_(std::exchange(id_, -1)) >= 0; }
 
 void SetUp() {
-  // All is closed by its Handle. HDF5 1.10 would crash at exit where a file could not be closed for a full disk.
+  // Handles close all. HDF5 1.10 crashes at exit if a full disk kept it from closing a file.
   H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
@@ -51,7 +51,7 @@ std::string LastFailure() {
   };
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, innermost, &reason);
   if (reason.empty()) return "unknown HDF5 failure";
-  // What the system said, without the pointers and the like around it.
+  // Only the message of the system, without pointers and the like.
   constexpr std::string_view kSystem = "error message = '";
   const auto found = reason.find(kSystem);
   if (found == std::string::npos) return reason;
@@ -77,10 +77,10 @@ bool File::Has(const std::string& name) const { return std::ranges::find(dataset
 Dataset File::Open(const std::string& name) const {
   if (!Has(name)) {
     std::string listed;
-    for (std::size_t i = 0; i < std::min(datasets_.size(), kListedNames); ++i) {
+    for (std::size_t i = 0; i < std::min(datasets_.size(), kMaxListedNames); ++i) {
       listed += (i ? ", " : "") + datasets_[i];
     }
-    if (datasets_.size() > kListedNames) listed += ", ...";
+    if (datasets_.size() > kMaxListedNames) listed += ", ...";
     throw Error(ErrorKind::kInput, path_ + ": no data set " + name + "; the file holds " +
                                        (listed.empty() ? "no data sets" : listed) +
                                        "; give the MVSEC file that has it");
@@ -108,7 +108,7 @@ Dataset::Dataset(hid_t file, const std::string& path, std::string name) : path_(
   std::vector<hsize_t> chunk(shape_.size());
   H5Pget_chunk(creation.get(), rank, chunk.data());
   chunk_rows_ = chunk[0];
-  // Cache one row of chunks: with HDF5's 1 MB, every read of a part of a large chunk would inflate all of it again.
+  // Caches one row of chunks: with HDF5's 1 MB, every read of a part of a large chunk inflates all of it again.
   std::size_t bytes = element_bytes_ * chunk[0];
   for (std::size_t i = 1; i < chunk.size(); ++i) bytes *= (shape_[i] + chunk[i] - 1) / chunk[i] * chunk[i];
   const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);

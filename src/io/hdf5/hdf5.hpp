@@ -9,8 +9,8 @@
 
 #include "evo/core/error.hpp"
 
-/// The little of HDF5's C library that the readers and writers need. Identifiers close themselves, HDF5 prints nothing,
-/// and every failure is an Error of kind kInput that names the file and the data set.
+/// The part of HDF5's C library that the readers and writers use. Identifiers close themselves, HDF5 prints nothing and
+/// every failure is an Error of kind kInput that names the file and the data set.
 namespace evo::io::hdf5 {
 
 /// An HDF5 identifier and the function that closes it.
@@ -26,7 +26,7 @@ class Handle {
 
   hid_t get() const { return id_; }
   bool valid() const { return id_ >= 0; }
-  /// False if HDF5 could not close it: what was written is then not all in the file.
+  /// Returns false if HDF5 could not close it; the file then lacks some of the written data.
   bool Close();
 
  private:
@@ -34,10 +34,10 @@ class Handle {
   herr_t (*close_)(hid_t) = nullptr;
 };
 
-/// To be called before anything else of HDF5: it prints no error stack (on this thread) and does nothing at exit.
+/// Switches off HDF5's error stack on this thread and its cleanup at exit. Call it before any other use of HDF5.
 void SetUp();
 
-/// Why the last call failed, in HDF5's words.
+/// The reason of the last failure in HDF5's words.
 std::string LastFailure();
 
 /// A numeric data set, read as doubles.
@@ -50,11 +50,11 @@ class Dataset {
   std::size_t element_bytes() const { return element_bytes_; }
   hid_t id() const { return id_.get(); }
 
-  /// Rows [first, first + rows) with all that lies in them, row-major.
+  /// Reads rows [first, first + rows), row-major.
   void Read(hsize_t first, hsize_t rows, double* values) const;
-  /// Element (row, column) of a two-dimensional data set.
+  /// Reads element (row, column) of a two-dimensional data set.
   double ReadElement(hsize_t row, hsize_t column) const;
-  /// An error about this data set, "<file>: <data set><what>".
+  /// The error "<file>: <data set><what>".
   Error Failure(const std::string& what) const;
 
  private:
@@ -77,10 +77,11 @@ class File {
  public:
   explicit File(const std::filesystem::path& path);
 
-  /// Full names of all data sets, in order of name.
+  /// Full names of all data sets, sorted.
   const std::vector<std::string>& datasets() const { return datasets_; }
   bool Has(const std::string& name) const;
-  /// Throws if it is missing (naming those that exist), not numeric, or compressed with a filter that is not installed.
+  /// Throws if the data set is missing (the message lists the others), not numeric or of a filter that is not
+  /// installed.
   Dataset Open(const std::string& name) const;
 
  private:

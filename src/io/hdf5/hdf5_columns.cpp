@@ -13,9 +13,11 @@ namespace evo::io::hdf5 {
 namespace {
 
 constexpr std::size_t kBytes = sizeof(double);
-constexpr hsize_t kLargestOverhead = 1024;  // of what does not get smaller by deflating
+constexpr hsize_t kMinBlockRows = 65536;      // 2 MB of events: enough work for each read
+constexpr hsize_t kMaxChunkRows = 262144;     // HDF5 caches a larger chunk, which is then read in parts of this size
+constexpr hsize_t kMaxStoredOverhead = 1024;  // bytes by which incompressible data grows
 
-/// Elements [first, first + count) of `total` whose bytes are stored by their place: all first ones, all second ones...
+/// Restores elements [first, first + count) of `total` from byte planes: all first bytes, all second bytes...
 void Unshuffle(const std::uint8_t* planes, std::size_t total, std::size_t first, std::size_t count, double* values) {
   const std::uint8_t* const p = planes + first;
   auto* __restrict const bytes = reinterpret_cast<std::uint8_t*>(values);
@@ -53,8 +55,12 @@ bool ColumnReader::IsPlainChunked() {
   }
   unsigned options = 0;  // edge chunks may be exempt from filters
   if (H5Pget_chunk_opts(creation.get(), &options) < 0 || options != 0) return false;
-  return chunk_rows_ > 0 && chunk_columns_ > 0 && chunk_rows_ <= kLargestChunkRows &&
-         chunk_columns_ <= table_.shape()[1];
+  return chunk_rows_ > 0 && chunk_columns_ > 0 && chunk_rows_ <= kMaxChunkRows && chunk_columns_ <= table_.shape()[1];
+}
+
+hsize_t ColumnReader::block_rows() const {
+  const hsize_t chunk = std::max<hsize_t>(table_.chunk_rows(), 1);
+  return chunk > kMaxChunkRows ? kMaxChunkRows : (kMinBlockRows + chunk - 1) / chunk * chunk;
 }
 
 void ColumnReader::Read(hsize_t first, hsize_t rows, std::vector<double>* values) {
@@ -93,13 +99,13 @@ bool ColumnReader::ReadChunk(hsize_t chunk_row, hsize_t chunk_column, hsize_t fi
 }
 
 bool ColumnReader::LoadChunk(hsize_t chunk_row, hsize_t chunk_column) {
-  SetUp();  // of this thread
+  SetUp();  // the error stack is per thread
   const std::array<hsize_t, 2> offset{chunk_row * chunk_rows_, chunk_column * chunk_columns_};
   hsize_t stored_bytes = 0;
   std::uint32_t skipped_filters = 0;
   if (H5Dget_chunk_storage_size(table_.id(), offset.data(), &stored_bytes) < 0 || stored_bytes == 0) return false;
   const hsize_t chunk_bytes = chunk_rows_ * chunk_columns_ * kBytes;
-  if (stored_bytes > 2 * chunk_bytes + kLargestOverhead) return false;  // damaged: HDF5 shall say how
+  if (stored_bytes > 2 * chunk_bytes + kMaxStoredOverhead) return false;  // damaged: HDF5 says how
   stored_.resize(stored_bytes);
   if (H5Dread_chunk(table_.id(), H5P_DEFAULT, offset.data(), &skipped_filters, stored_.data()) < 0) return false;
   if (skipped_filters != 0) return false;

@@ -17,7 +17,7 @@ namespace evo::io {
 namespace {
 
 constexpr char kExpected[] = "a track file of rows 'id t x y' or 't,x,y,theta,id'";
-constexpr double kLargestId = 9e15;  // whole numbers up to here are exact in a double
+constexpr double kMaxId = 9e15;  // whole numbers up to here are exact in a double
 
 struct Row {
   events::TrackObservation observation;
@@ -28,7 +28,7 @@ struct Row {
 std::int64_t ParseId(const TextLines& lines, std::string_view text) {
   auto id = ParseInteger(text);
   const auto number = ParseFinite(text);
-  if (!id && number && std::abs(*number) < kLargestId && *number == std::floor(*number)) {
+  if (!id && number && std::abs(*number) < kMaxId && *number == std::floor(*number)) {
     id = static_cast<std::int64_t>(*number);
   }
   if (!id || *id < 0) throw lines.Failure("the id " + Quote(text) + " is not a whole number from 0 on");
@@ -50,7 +50,7 @@ events::TrackObservation ParseRow(const TextLines& lines, std::string_view line,
   return {ParseId(lines, fields[haste ? 4 : 0]), *t, *x, *y};
 }
 
-/// Of rows with one id and stamp, one; `rows` is sorted, equal rows in the order of the file.
+/// Keeps one of the rows with the same id and stamp. `rows` is sorted, equal ones in the order of the file.
 events::Tracks Unique(const TextLines& lines, const std::vector<Row>& rows, bool keep_last) {
   events::Tracks tracks;
   tracks.reserve(rows.size());
@@ -69,7 +69,7 @@ events::Tracks Unique(const TextLines& lines, const std::vector<Row>& rows, bool
   return tracks;
 }
 
-/// Several times faster than printf.
+/// Several times faster than fmt.
 void AppendPixel(double px, std::string* line) {
   std::array<char, 32> text;  // fits any position that is written
   const auto end = std::to_chars(text.data(), text.data() + text.size(), px, std::chars_format::fixed, 4).ptr;

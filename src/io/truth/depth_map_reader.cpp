@@ -19,8 +19,8 @@ constexpr char kMaps[] = "davis/left/depth_image_raw";
 constexpr char kStamps[] = "davis/left/depth_image_raw_ts";
 constexpr char kMoving[] = "davis/left/moving_image_raw";
 constexpr char kRectified[] = "davis/left/depth_image_rect";
-constexpr double kLargestSeconds = 9e9;
-constexpr hsize_t kLargestSide = 65536;
+constexpr double kMaxSeconds = 9e9;  // int64 holds 9.2e9 s in nanoseconds
+constexpr hsize_t kMaxSide = 65536;  // px; the event columns hold 16 bits
 
 hdf5::Dataset OpenMaps(const hdf5::File& file, const std::filesystem::path& path) {
   if (!file.Has(kMaps) && file.Has(kRectified)) {
@@ -39,7 +39,7 @@ std::vector<TimeNs> ReadStamps(const hdf5::Dataset& dataset, hsize_t maps) {
   std::vector<TimeNs> stamps;
   for (const double s : seconds) {
     const std::string row = " row " + std::to_string(stamps.size()) + ": the stamp ";
-    if (!(std::abs(s) < kLargestSeconds)) throw dataset.Failure(row + FormatNumber(s) + " is not a time");
+    if (!(std::abs(s) < kMaxSeconds)) throw dataset.Failure(row + FormatNumber(s) + " is not a time");
     const TimeNs t = FromSeconds(s);
     if (!stamps.empty() && t <= stamps.back()) {
       throw dataset.Failure(row + FormatTime(t) + " s is not later than the one before");
@@ -56,7 +56,7 @@ struct DepthMapReader::State {
     const auto& shape = maps.shape();
     if (shape.size() != 3) throw maps.Failure(" is not N x height x width");
     if (shape[0] == 0) throw maps.Failure(" holds no depth maps");
-    if (shape[1] == 0 || shape[2] == 0 || shape[1] > kLargestSide || shape[2] > kLargestSide) {
+    if (shape[1] == 0 || shape[2] == 0 || shape[1] > kMaxSide || shape[2] > kMaxSide) {
       throw maps.Failure(" has images of an impossible size");
     }
     stamps = ReadStamps(file.Open(kStamps), shape[0]);

@@ -1,48 +1,34 @@
 #include "evo/io/trajectory_io.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <vector>
 
 #include "evo/core/error.hpp"
-#include "evo/core/format.hpp"
 #include "evo/core/number.hpp"
 #include "evo/core/output_file.hpp"
 #include "evo/io/file_kind.hpp"
 #include "io/hdf5/hdf5.hpp"
 #include "io/text_lines.hpp"
+#include "io/truth/stamp_order.hpp"
 
 namespace evo::io {
 
 namespace {
 
 constexpr double kUnitTolerance = 1e-3;  // files with five decimals are off by 1e-5
-constexpr double kLargestSeconds = 9e9;
-constexpr double kFarthest = 1e12;  // m; squares of it still leave digits for the errors
+constexpr double kMaxSeconds = 9e9;      // int64 holds 9.2e9 s in nanoseconds
+constexpr double kMaxCoordinate = 1e12;  // m; squares of it still leave digits for the errors
 constexpr char kExpectedText[] = "a trajectory of lines 't px py pz qx qy qz qw'";
 
 using RowMajor4d = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
 
-std::string NotLater(TimeNs previous, TimeNs t) {
-  return "the stamp " + FormatTime(t) + " s is not later than the one before, " + FormatTime(previous) +
-         " s; sort the poses by time and drop repeated ones";
-}
-
-bool IsPlace(const Eigen::Vector3d& position) { return position.cwiseAbs().maxCoeff() <= kFarthest; }
-
-/// Of the table of covariances.
-std::string CovarianceHeader() {
-  constexpr std::array kNames = {"x", "y", "z", "rx", "ry", "rz"};
-  std::string header = "timestamp";
-  for (std::size_t i = 0; i < kNames.size(); ++i) {
-    for (std::size_t j = i; j < kNames.size(); ++j) header += std::string(",") + kNames[i] + "_" + kNames[j];
-  }
-  return header;
-}
+bool IsInRange(const Eigen::Vector3d& position) { return position.cwiseAbs().maxCoeff() <= kMaxCoordinate; }
 
 geometry::StampedPose ParsePose(const TextLines& lines, std::string_view line) {
   const auto fields = SplitFields(line);
@@ -56,7 +42,7 @@ geometry::StampedPose ParsePose(const TextLines& lines, std::string_view line) {
     v[i] = *value;
   }
   const Eigen::Vector3d position(v[0], v[1], v[2]);
-  if (!IsPlace(position)) throw lines.Failure("the position is more than 1e12 m from the origin");
+  if (!IsInRange(position)) throw lines.Failure("the position is more than 1e12 m from the origin");
   const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
   if (!(std::abs(rotation.norm() - 1.0) < kUnitTolerance)) {
     throw lines.Failure("the quaternion has the norm " + FormatNumber(rotation.norm()) +
@@ -70,8 +56,8 @@ geometry::SE3 ToPose(const RowMajor4d& T) {
   return {Eigen::Quaterniond(rotation), T.topRightCorner<3, 1>()};
 }
 
-/// Empty if `T` is a rigid motion.
-std::string RigidFault(const RowMajor4d& T) {
+/// The fault of a matrix that is no rigid motion; empty for one that is.
+std::string RigidityFault(const RowMajor4d& T) {
   if (!T.allFinite()) return "the pose is not finite";
   const Eigen::Matrix3d rotation = T.topLeftCorner<3, 3>();
   const double skew = (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
@@ -79,7 +65,7 @@ std::string RigidFault(const RowMajor4d& T) {
   if (!((T.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() < kUnitTolerance)) {
     return "the pose's last row is not 0 0 0 1";
   }
-  if (!IsPlace(T.topRightCorner<3, 1>())) return "the position is more than 1e12 m from the origin";
+  if (!IsInRange(T.topRightCorner<3, 1>())) return "the position is more than 1e12 m from the origin";
   return "";
 }
 
@@ -103,13 +89,13 @@ geometry::Trajectory ReadMvsec(const std::filesystem::path& path, GroundTruthSou
   trajectory.reserve(shape[0]);
   for (std::size_t i = 0; i < shape[0]; ++i) {
     const std::string where = " row " + std::to_string(i) + ": ";
-    if (!(std::abs(seconds[i]) < kLargestSeconds)) {
+    if (!(std::abs(seconds[i]) < kMaxSeconds)) {
       throw stamps.Failure(where + "the stamp " + FormatNumber(seconds[i]) + " is not a time");
     }
     const TimeNs t = FromSeconds(seconds[i]);
-    if (i > 0 && t <= trajectory.back().t) throw stamps.Failure(where + NotLater(trajectory.back().t, t));
+    if (i > 0 && t <= trajectory.back().t) throw stamps.Failure(where + UnorderedStampsMessage(trajectory.back().t, t));
     const RowMajor4d T = Eigen::Map<const RowMajor4d>(&matrices[16 * i]);
-    if (const std::string fault = RigidFault(T); !fault.empty()) throw poses.Failure(where + fault);
+    if (const std::string fault = RigidityFault(T); !fault.empty()) throw poses.Failure(where + fault);
     trajectory.push_back({t, ToPose(T)});
   }
   return trajectory;
@@ -122,7 +108,7 @@ geometry::Trajectory ReadText(const std::filesystem::path& path) {
   while (lines.Next(&line)) {
     const geometry::StampedPose pose = ParsePose(lines, line);
     if (!trajectory.empty() && pose.t <= trajectory.back().t) {
-      throw lines.Failure(NotLater(trajectory.back().t, pose.t));
+      throw lines.Failure(UnorderedStampsMessage(trajectory.back().t, pose.t));
     }
     trajectory.push_back(pose);
   }
@@ -154,7 +140,7 @@ geometry::Trajectory ReadKitti(const std::filesystem::path& path) {
       if (!value) throw lines.Failure(Quote(fields[i]) + " is not a finite number");
       T.data()[i] = *value;
     }
-    if (const std::string fault = RigidFault(T); !fault.empty()) throw lines.Failure(fault);
+    if (const std::string fault = RigidityFault(T); !fault.empty()) throw lines.Failure(fault);
     trajectory.push_back({static_cast<TimeNs>(trajectory.size()) * kNsPerSecond, ToPose(T)});
   }
   if (trajectory.empty()) throw Error(ErrorKind::kInput, path.string() + ": no poses; expected rows of 12 numbers");
@@ -169,62 +155,16 @@ geometry::Trajectory ReadGroundTruth(const std::filesystem::path& path, GroundTr
 
 void WriteTum(const std::filesystem::path& path, const geometry::Trajectory& trajectory) {
   OutputFile file(path);
-  char numbers[512];  // seven doubles of any size would need more, poses of this universe do not
   for (const auto& [t, T] : trajectory) {
     const Eigen::Vector3d& p = T.translation();
     const Eigen::Quaterniond& q = T.rotation();
     if (!p.allFinite() || !q.coeffs().allFinite()) {
       throw Error(ErrorKind::kInput, path.string() + ": the pose at " + FormatTime(t) + " s is not finite");
     }
-    std::snprintf(numbers, sizeof numbers, " %.12f %.12f %.12f %.12f %.12f %.12f %.12f\n", p.x(), p.y(), p.z(), q.x(),
-                  q.y(), q.z(), q.w());
-    file.stream() << FormatTime(t) << numbers;
+    file.stream() << fmt::format("{} {:.12f} {:.12f} {:.12f} {:.12f} {:.12f} {:.12f} {:.12f}\n", FormatTime(t), p.x(),
+                                 p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
   }
   file.Commit();
-}
-
-void WritePoseCovariances(const std::filesystem::path& path,
-                          const std::vector<geometry::StampedCovariance>& covariances) {
-  OutputFile file(path);
-  file.stream() << CovarianceHeader() << '\n';
-  for (const auto& [t, covariance] : covariances) {
-    file.stream() << FormatTime(t);
-    for (Eigen::Index i = 0; i < 6; ++i) {
-      for (Eigen::Index j = i; j < 6; ++j) file.stream() << Format(",%.9g", covariance(i, j));
-    }
-    file.stream() << '\n';
-  }
-  file.Commit();
-}
-
-std::vector<geometry::StampedCovariance> ReadPoseCovariances(const std::filesystem::path& path) {
-  TextLines lines(path);
-  std::string_view line;
-  if (!lines.Next(&line) || line != CovarianceHeader()) {
-    throw Error(ErrorKind::kInput, path.string() + ": expected a table that begins with the line '" +
-                                       CovarianceHeader() + "'; give the pose_covariance.csv of a run");
-  }
-  std::vector<geometry::StampedCovariance> covariances;
-  while (lines.Next(&line)) {
-    const auto fields = SplitAtCommas(line);
-    const auto t = ParseTime(fields[0]);
-    if (!t) throw lines.Failure("the stamp " + Quote(fields[0]) + " is not a time in seconds");
-    if (fields.size() != 22) throw lines.Failure("expected a stamp and 21 numbers, found " + Quote(line));
-    if (!covariances.empty() && *t <= covariances.back().t) throw lines.Failure(NotLater(covariances.back().t, *t));
-    geometry::StampedCovariance row{*t, geometry::Matrix6d::Zero()};
-    auto field = fields.begin() + 1;
-    for (Eigen::Index i = 0; i < 6; ++i) {
-      for (Eigen::Index j = i; j < 6; ++j, ++field) {
-        const auto value = ParseFinite(*field);
-        if (!value) throw lines.Failure(Quote(*field) + " is not a finite number");
-        if (i == j && *value < 0.0) throw lines.Failure("the variance " + Quote(*field) + " is negative");
-        row.covariance(i, j) = row.covariance(j, i) = *value;
-      }
-    }
-    covariances.push_back(row);
-  }
-  if (covariances.empty()) throw Error(ErrorKind::kInput, path.string() + ": holds no covariances");
-  return covariances;
 }
 
 }  // namespace evo::io

@@ -11,7 +11,7 @@ namespace evo::tracking {
 
 namespace {
 
-constexpr int kPyramidLevels = 3;         // below the full resolution: flows up to half a patch times 8
+constexpr int kPyramidLevels = 3;         // below the full resolution: motions of up to 8 half patches
 constexpr double kSmoothingPx = 1.0;      // standard deviation; a single event is no gradient
 constexpr double kSaturation = 6.0;       // events of a white pixel
 constexpr double kMinBorderPx = 6.0;      // a patch that sticks out farther is tracked badly

@@ -17,7 +17,7 @@ namespace evo::tracking {
 namespace {
 
 constexpr int kTemplateMarginPx = 4;           // the template exceeds the patch, which grows and moves against it
-constexpr double kCandidatesPerFeature = 1.5;  // corners tried for each missing feature: about a third fails
+constexpr double kCandidatesPerFeature = 1.5;  // corners tried for each missing feature: many do not become one
 constexpr double kInformationSigmaPx = 1.0;    // standard deviation of the densities that are asked for information
 constexpr double kInformationOutlierDensityRatio = 0.2;
 constexpr std::size_t kMaxRecent = 200;  // candidates to compare with: enough for a quantile, few enough to be recent

@@ -12,7 +12,7 @@ namespace evo::tracking {
 namespace {
 
 constexpr int kCellPx = 24;                // a patch of 31 px, of which each flow is estimated, overlaps the next one
-constexpr double kNeighbourhoodPx = 40.0;  // features farther away are rarely of the same depth
+constexpr double kNeighbourhoodPx = 40.0;  // a feature within this distance gives a cell its flow
 constexpr double kDistanceFloorPx = 4.0;   // limits the weight of the nearest feature
 constexpr double kInsideGrid = 1.001;      // cells: keeps the right and lower neighbours inside the grid
 
@@ -96,6 +96,7 @@ Eigen::Vector2d FlowField::Interpolate(const Eigen::Vector2d& position) const {
   const auto flow = [&](int dr, int dc) -> const Eigen::Vector2d& {
     return cells_[static_cast<std::size_t>((at.row + dr) * columns_ + at.column + dc)].flow;
   };
+  // Not InterpolateBilinear, whose rounding differs.
   return (1 - at.fy) * ((1 - at.fx) * flow(0, 0) + at.fx * flow(0, 1)) +
          at.fy * ((1 - at.fx) * flow(1, 0) + at.fx * flow(1, 1));
 }

@@ -9,7 +9,8 @@ namespace evo::tracking {
 namespace {
 
 constexpr float kHarrisK = 0.04f;  // of Harris and Stephens
-constexpr std::array<float, 4> kGaussian = {0.39905028f, 0.24203623f, 0.05400558f, 0.00443305f};  // of sigma 1 px
+// Of sigma 1 px. Constants for the compiler; MakeGaussianKernel(1, 3) differs in the last bit of the last weight.
+constexpr std::array<float, 4> kGaussian = {0.39905028f, 0.24203623f, 0.05400558f, 0.00443305f};
 constexpr int kSmoothReach = 3;
 constexpr int kGradientReach = kSmoothReach + 1;
 constexpr int kStripeRows = 16;  // that a thread takes at a time

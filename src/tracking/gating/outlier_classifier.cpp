@@ -11,7 +11,7 @@ namespace evo::tracking {
 
 namespace {
 
-constexpr std::size_t kMaxRecent = 200;        // some ten seconds of features: the scene's texture changes slowly
+constexpr std::size_t kMaxRecent = 200;        // features to compare with: enough for a quantile of a few percent
 constexpr std::size_t kMinRecent = 50;         // with fewer, the medians and the quantile are noise
 constexpr double kMinTypicalComponent = 1e-9;  // guards the division if a component is always zero
 

@@ -14,28 +14,27 @@ namespace {
 constexpr std::size_t kMinFeatures = 12;  // for five unknowns and outliers
 
 // Search.
-constexpr int kIterations = 6;
+constexpr int kIterations = 6;     // of Gauss-Newton, from each start
 constexpr double kMaxCost = 0.5;   // mean robust loss, at most 1, of a motion that explains the flows
 constexpr double kGoodCost = 0.2;  // beyond this the search tries one other direction a frame,
 constexpr double kFairCost = 0.4;  // and beyond this all directions
 constexpr double kRidge = 1e-9;    // keeps the normal equations regular without flows
 constexpr double kDamping = 1e-3;  // of the direction, relative to the normal equations,
 constexpr double kMinDamping = 1e-6;
-constexpr double kMinTranslationalFlow =
-    1e-3;  // on the plane z = 1, 1/s: nearer the focus of expansion lines are noise
+constexpr double kMinTranslationalFlow = 1e-3;  // on the plane z = 1, 1/s; nearer to the focus lines are ill defined
 
 // Standard deviation of a flow along one axis.
 constexpr double kFlowErrorRatio = 0.03;  // of the flow
 constexpr double kFlowErrorPxS = 2.0;     // added to it
 
 // Kalman filter.
-constexpr int kFilterIterations = 2;           // start next to the solution
-constexpr double kDirectionNoise = 0.014;      // rad in a second; grows with the root of time
-constexpr double kAngularVelocityNoise = 0.2;  // rad/s in a second; grows with the root of time
+constexpr int kFilterIterations = 2;           // from next to the solution
+constexpr double kDirectionNoise = 0.014;      // rad/sqrt(s)
+constexpr double kAngularVelocityNoise = 0.2;  // rad/s/sqrt(s)
 constexpr double kVarianceInflation = 3.0;     // errors of flows are correlated
-constexpr double kMinStepS = 1e-3;
-constexpr double kMinDirectionCosine = 0.9;  // between two directions of one motion: 26 degrees
-constexpr double kAccelerationGain = 0.2;    // of one frame in the typical angular acceleration
+constexpr double kMinStepS = 1e-3;             // of a repeated stamp: the covariance must grow
+constexpr double kMinDirectionCosine = 0.9;    // between two directions of one motion: 26 degrees
+constexpr double kAccelerationGain = 0.2;      // weight of one frame in the typical angular acceleration
 
 // Static points.
 constexpr double kMaxStaticErrorRatio = 0.2;  // of the flow

@@ -12,8 +12,9 @@ struct PixelJacobians {
   bool known() const { return !J_pixel_normalized.isZero(0.0); }
 
   Eigen::Vector2d normalized = Eigen::Vector2d::Zero();          ///< the pixel's ray, on the plane z = 1
-  Eigen::Matrix2d J_pixel_normalized = Eigen::Matrix2d::Zero();  ///< px, by the ray on the plane z = 1
-  Eigen::Matrix<double, 2, 3> J_pixel_rotation = Eigen::Matrix<double, 2, 3>::Zero();  ///< px/rad, by R_now_before
+  Eigen::Matrix2d J_pixel_normalized = Eigen::Matrix2d::Zero();  ///< px for a unit on that plane
+  Eigen::Matrix<double, 2, 3> J_pixel_rotation =
+      Eigen::Matrix<double, 2, 3>::Zero();  ///< px/rad, of the world about the camera
 };
 
 /// PixelJacobians of the whole image, tabulated every few pixels: each frame asks for those of every feature.

@@ -118,10 +118,10 @@ struct Columns {
     }
     const float one = (radius - b) / a;
     const float other = (-radius - b) / a;
-    const auto farthest = static_cast<float>(limit);
+    const auto bound = static_cast<float>(limit);
     // A cast rounds positive numbers down.
-    const int first = limit - static_cast<int>(farthest - std::clamp(std::min(one, other), -farthest, farthest));
-    const int last = static_cast<int>(std::clamp(std::max(one, other), -farthest, farthest) + farthest) - limit;
+    const int first = limit - static_cast<int>(bound - std::clamp(std::min(one, other), -bound, bound));
+    const int last = static_cast<int>(std::clamp(std::max(one, other), -bound, bound) + bound) - limit;
     begin = std::max(begin, first);
     end = std::min(end, last + 1);
   }

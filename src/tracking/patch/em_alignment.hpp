@@ -36,8 +36,8 @@ void Accumulate(const events::LocalEvents& events, const PatchMotion& motion, Ev
 /// Correction of template points, px: a point u moves by (1, dt / half window, u / radius, v / radius) times this.
 using TemplateCorrection = Eigen::Matrix<double, 4, 2>;
 
-/// Changes `motion` such that the template points of all events move by the correction. Exact for the affine part; the
-/// perspective and the rates change them to second order only.
+/// Changes `motion` such that the template points of all events move by the correction: exactly for an affine motion,
+/// approximately with perspective or rates.
 void ApplyCorrection(const TemplateCorrection& correction, double half_window_s, double patch_radius_px,
                      PatchMotion* motion);
 

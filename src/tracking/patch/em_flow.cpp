@@ -17,7 +17,7 @@ namespace {
 
 // Moving the events also moves the density that attracts them, so a plain M step closes only part of the gap.
 constexpr double kOverRelaxation = 1.6;
-constexpr double kMinVariance = 0.25;  // of the association, px^2: a narrower one finds no neighbours
+constexpr double kMinVariance = 0.25;  // of the association, px^2: half a pixel
 
 // Bilinear votes add a variance of cell^2 / 6; what cells larger than 1 px add is subtracted from the association's.
 double SigmaInCells(const FlowOptions& options) {

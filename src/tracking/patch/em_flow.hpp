@@ -14,7 +14,7 @@ struct FlowOptions {
   double convergence_px = 0.02;  ///< a step that moves the events at the window's ends by less is the last
 };
 
-/// Expectation maximisation of the optical flow of a patch (EM 1 of A. Z. Zhu et al., ICRA 2017, equations 6 to 9).
+/// Expectation maximisation of the optical flow of a patch (EM 1 of A. Z. Zhu et al., ICRA 2017).
 /// Events that are propagated along the true flow to the reference instant pile up on the edges that caused them. E
 /// step: the mean shift dx of every event in the density of all propagated events, and its inlier probability w. M
 /// step: the flow changes by the slope of -dx over dt, by least squares weighted with w, in closed form.

@@ -15,13 +15,13 @@ namespace evo::tracking {
 namespace {
 
 constexpr double kKnotIntervalS = 0.02;      // follows vibrations of up to about 20 Hz
-constexpr double kSensorBlurS = 0.016;       // half window that averages like the sensor, in the simulator and on MVSEC
+constexpr double kSensorBlurS = 0.016;       // half window that averages like the sensor's slow response
 constexpr double kMaxHalfWindowKnots = 4.0;  // longer windows are treated like this: their support would be longer
 constexpr double kInstantKnots = 1e-3;       // a shorter half window is an instant
 constexpr double kChordRatio = 0.77;         // a window's mean slope is about that of the chord over this part of it
 constexpr std::array<double, 5> kPositionDifference{1.0, -4.0, 6.0, -4.0, 1.0};
 constexpr std::array<double, 3> kFlowDifference{1.0, -2.0, 1.0};
-constexpr double kMaxFrameKnots = 1.2501;   // differences over longer frame intervals alias the fast rotation
+constexpr double kMaxFrameKnots = 1.2501;   // longer frame intervals do not show the fast rotation
 constexpr double kDifferenceScalePx = 1.0;  // width of the robust loss
 constexpr double kPriorPx = 0.5;            // typical size of the fast rotation
 constexpr int kIterations = 2;              // of the reweighting

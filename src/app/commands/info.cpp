@@ -1,0 +1,39 @@
+#include <algorithm>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+
+#include "app/commands.hpp"
+#include "evo/io/file_description.hpp"
+
+namespace evo::app {
+
+namespace {
+
+void RunInfo(const std::string& path) {
+  const io::FileDescription description = io::DescribeFile(path);
+  std::size_t width = 0;
+  for (const auto& [name, value] : description.values) width = std::max(width, name.size());
+  std::cout << path << ": " << description.kind << '\n';
+  for (const auto& [name, value] : description.values) {
+    std::cout << "  " << std::left << std::setw(static_cast<int>(width)) << name << "  " << value << '\n';
+  }
+}
+
+}  // namespace
+
+Command AddInfoCommand(CLI::App& app) {
+  auto path = std::make_shared<std::string>();
+  auto* const parser = app.add_subcommand("info", "Describe a file: its kind, size and extent");
+  parser->add_option("FILE", *path, "Events, trajectory, ground truth, tracks, calibration or the folder of a sequence")
+      ->required()
+      ->type_name("");
+  parser->footer(
+      "Examples:\n"
+      "  evo-run info data_samples/street\n"
+      "  evo-run info outdoor_day2_data.hdf5\n"
+      "  evo-run info out/tracks.txt");
+  return {parser, [path](const auto&) { RunInfo(*path); }};
+}
+
+}  // namespace evo::app

@@ -1,0 +1,127 @@
+#include "app/stages/tracking_stage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+#include <span>
+
+#include "app/run/error_context.hpp"
+#include "app/run/output_folder.hpp"
+#include "app/stages/event_drawing.hpp"
+#include "app/stages/track_results.hpp"
+#include "evo/core/error.hpp"
+#include "evo/core/output_file.hpp"
+#include "evo/core/progress.hpp"
+#include "evo/report/evaluation_tables.hpp"
+#include "evo/report/figures.hpp"
+#include "evo/report/latex_tables.hpp"
+#include "evo/report/terminal_summary.hpp"
+
+namespace evo::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The stamp at which tracking ends, also if --to is beyond the end of the recording.
+TimeNs EndOfInterval(const Recording& recording) {
+  if (!recording.interval.to) return recording.reader->last_stamp();
+  const TimeNs to = recording.reader->first_stamp() + *recording.interval.to;
+  try {
+    return std::min(to, recording.reader->last_stamp());
+  } catch (const Error&) {
+    return to;  // damage beyond the interval does not concern this run
+  }
+}
+
+/// Four frames in the middle of the interval, or four every `draw_every_s` seconds from its start on.
+DrawingSchedule ScheduleDrawings(double draw_every_s, double frame_interval_s, const Recording& recording) {
+  const TimeNs from = recording.reader->first_stamp() + recording.interval.from;
+  if (draw_every_s > 0.0) return {from, FromSeconds(draw_every_s)};
+  return {from + (EndOfInterval(recording) - from) / 2 - 2 * FromSeconds(frame_interval_s), std::nullopt};
+}
+
+void DrawTrackFigures(const fs::path& folder, const evaluation::LifetimeStatistics& lifetimes,
+                      std::span<const report::LiveFeatures> live) {
+  report::Gnuplot gnuplot(folder);
+  gnuplot.Draw("lifetime", report::LifetimeFigure("lifetime", lifetimes));
+  gnuplot.Draw("lifetime_seconds", report::LifetimeSecondsFigure("lifetime_seconds", lifetimes));
+  gnuplot.Draw("live_features", report::LiveFeaturesFigure("live_features", live));
+}
+
+/// Tracks the recording into `results` and draws into images/.
+tracking::TrackingResult Track(const tracking::TrackerOptions& options, Recording* recording, StageRun* run,
+                               TrackResults* results) {
+  const bool draw = run->results.draw_every_s > 0.0 || !run->results.no_plots;
+  EventDrawing drawing(
+      run->results.out / "images", recording->reader->first_stamp(),
+      draw ? ScheduleDrawings(run->results.draw_every_s, options.frame_interval_s, *recording) : DrawingSchedule());
+  Progress progress("tracking", run->show_progress);
+  return WithErrorContext(recording->events.string(), [&] {
+    return tracking::TrackEvents(
+        recording->reader.get(), recording->camera, options, &run->pool,
+        [&](events::Tracks observations) { results->Add(std::move(observations)); },
+        [&](double done) { progress.Update(done); },
+        draw ? [&](const tracking::TrackingView& view) { drawing.Add(view); }
+             : std::function<void(const tracking::TrackingView&)>{});
+  });
+}
+
+void WriteLifetimes(const StageRun& run, const std::string& sequence, const evaluation::LifetimeStatistics& lifetimes) {
+  report::WriteLifetimes(run.results.out / "lifetime.csv", lifetimes);
+  WriteText(run.results.out / "tables" / "lifetime.tex", report::LifetimeTable(sequence, lifetimes));
+}
+
+void RecordCounts(const TrackingOutcome& outcome, StageRun* run) {
+  const auto& [result, lifetimes, observations] = outcome;
+  RunRecord& record = run->record;
+  record.manifest.recorded_s = ToSeconds(result.frames.back() - result.frames.front());
+  record.AddCount("threads", static_cast<std::size_t>(run->pool.size()));
+  record.AddCount("events", result.events);
+  record.AddCount("event_frames", result.frames.size());
+  record.AddCount("event_key_frames", result.key_frames);
+  record.AddCount("tracks", static_cast<std::size_t>(lifetimes.tracks + lifetimes.tracks_too_short));
+  record.AddCount("track_observations", observations);
+}
+
+}  // namespace
+
+std::vector<std::string> TrackingResultNames() { return {"tracks.txt", "lifetime.csv", "tables/lifetime.tex"}; }
+
+void RemoveTrackingResults(const fs::path& folder) {
+  RemoveResults(folder, R"(manifest\.json|tracks\.txt|lifetime\.csv)");
+  RemoveResults(folder / "tables", R"(lifetime\.tex)");
+  RemovePlots(folder, "lifetime|lifetime_seconds|live_features");
+  RemoveDrawings(folder / "images");
+}
+
+TrackingOutcome RunTrackingStage(const tracking::TrackerOptions& options, Recording* recording, StageRun* run,
+                                 events::Tracks* tracks) {
+  TrackResults results(run->results.out / "tracks.txt", {tracking::DescribePositions(options)}, tracks);
+  TrackingOutcome outcome;
+  outcome.result = run->record.Time("track", [&] { return Track(options, recording, run, &results); });
+  const auto& frames = outcome.result.frames;
+  outcome.lifetimes = results.Lifetimes(frames);
+  outcome.observations = results.observations();
+  run->record.Time("write_tracks", [&] {
+    results.Commit();
+    WriteLifetimes(*run, SequenceName(recording->events), outcome.lifetimes);
+    if (!run->results.no_plots) {
+      DrawTrackFigures(run->results.out / "plots", outcome.lifetimes, results.CountLive(frames));
+    }
+  });
+  RecordCounts(outcome, run);
+  return outcome;
+}
+
+std::string FormatTracking(const TrackingOutcome& outcome) {
+  const auto frames = std::max<std::size_t>(1, outcome.result.frames.size());
+  return fmt::format("tracking   {} events, {} event frames, {:.0f} live features\n", outcome.result.events,
+                     outcome.result.frames.size(),
+                     static_cast<double>(outcome.observations) / static_cast<double>(frames)) +
+         report::FormatLifetimes(outcome.lifetimes);
+}
+
+}  // namespace evo::app
