@@ -1,8 +1,7 @@
 #pragma once
 
 #include "evo/core/parameters.hpp"
-#include "evo/evaluation/evaluation.hpp"
-#include "evo/evaluation/track_truth.hpp"
+#include "evo/evaluation/evaluation_options.hpp"
 #include "evo/odometry/odometry_options.hpp"
 #include "evo/tracking/tracker_options.hpp"
 

@@ -31,9 +31,9 @@ void Register(Parameters& parameters, AssociationOptions& options) {
   parameters.Add("evaluation.association", &options.association, {"interpolate", "nearest", "unique", "nearest-truth"},
                  "rule that matches an estimated pose with a true one");
   parameters.Add("evaluation.max_interpolation_s", &options.max_interpolation_s, 0.0, 1e3,
-                 "interpolate: largest time between true poses to interpolate (s)");
+                 "interpolate: maximum time between true poses to interpolate (s)");
   parameters.Add("evaluation.max_difference_s", &options.max_difference_s, -1.0, 1e3,
-                 "other rules: largest time between matched poses (s); negative: 0.01 for nearest, 0.02 for unique, "
+                 "other rules: maximum time between matched poses (s); negative: 0.01 for nearest, 0.02 for unique, "
                  "twice the median interval of the truth for nearest-truth");
   parameters.Add("evaluation.estimate_clock_offset_s", &options.estimate_clock_offset_s, -1e9, 1e9,
                  "offset added to the estimate's stamps (s)");
@@ -45,7 +45,7 @@ void Register(Parameters& parameters, RelativePoseErrorOptions& options) {
   parameters.Add("evaluation.rpe_pairs", &options.pairs, {"consecutive", "all", "closest"},
                  "rule that selects the pairs of poses");
   parameters.Add("evaluation.rpe_tolerance", &options.tolerance, 0.0, 1.0,
-                 "largest deviation of a pair from its distance (ratio)");
+                 "maximum deviation of a pair from its distance (ratio)");
   parameters.Add("evaluation.rpe_pairs_from", &options.pairs_from, {"estimate", "truth"},
                  "trajectory along which the distance is measured");
 }
@@ -76,14 +76,14 @@ void Register(Parameters& parameters, EvaluationOptions& options) {
   parameters.Add("evaluation.chord_m", &options.chord_m, 1e-3, 1e3,
                  "length of the chord of the true path that gives the direction of travel (m)");
   parameters.Add("evaluation.gap_s", &options.gap_s, 1e-3, 1e3,
-                 "longest time without an estimated pose that is not a gap (s)");
+                 "maximum time without an estimated pose that is not a gap (s)");
   Register(parameters, options.rpe);
   Register(parameters, options.segments);
 }
 
 void Register(Parameters& parameters, TrackTruthOptions& options) {
   parameters.Add("evaluation.depth_edge_ratio", &options.depth_edge_ratio, 0.001, 1,
-                 "largest relative difference between neighbouring depths of one surface (ratio)");
+                 "maximum relative difference between neighbouring depths of one surface (ratio)");
   parameters.Alias("evaluation.depth_edge", "evaluation.depth_edge_ratio");
   parameters.Add("evaluation.surface_radius_px", &options.surface_radius_px, 0.0, 20.0,
                  "radius around a track's start in which it may lie on any surface (px)");

@@ -28,12 +28,12 @@ struct Wall {
   Eigen::Vector3d n;
   double left = -1e9;
   double right = 1e9;
-  bool moves = false;  ///< said to move by itself (it does not)
+  bool moves = false;  ///< marked as moving, although it is static
 };
 
-/// What a ray of a camera meets first.
+/// The first surface that a ray meets.
 struct Meeting {
-  double depth = std::numeric_limits<double>::quiet_NaN();  ///< along z; NaN where there is nothing
+  double depth = std::numeric_limits<double>::quiet_NaN();  ///< along z; NaN without a surface
   bool moves = false;
 };
 inline Meeting Meet(const Eigen::Vector3d& ray_cam, const geometry::SE3& T_world_cam, const std::vector<Wall>& walls) {
@@ -87,8 +87,7 @@ struct TrackScene {
     writer.Commit();
   }
 
-  /// The track of the point that lies behind `pixel` after `from` seconds, every 10 ms until `to`, without regard to
-  /// what hides it.
+  /// The track of the point behind `pixel` at `from` seconds, every 10 ms until `to`, occluded or not.
   events::Tracks Follow(std::int64_t id, const Eigen::Vector2d& pixel, double from, double to) const {
     const geometry::Trajectory poses = Poses();
     const geometry::SE3 T_first = *geometry::PoseAt(poses, Stamp(from), kNsPerSecond);

@@ -8,6 +8,7 @@
 
 #include "app/config.hpp"
 #include "app/run/run_record.hpp"
+#include "evo/evaluation/evaluation.hpp"
 #include "evo/evaluation/lifetime.hpp"
 #include "evo/evaluation/track_accuracy.hpp"
 #include "evo/io/trajectory_io.hpp"

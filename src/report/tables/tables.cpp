@@ -2,21 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "evo/core/number.hpp"
 #include "evo/core/output_file.hpp"
 
 namespace evo::report {
 
 namespace {
 
-std::string FormatAllDigits(double value) {
-  if (!std::isfinite(value)) return "";
-  char buffer[32];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
-}
+std::string FormatAllDigits(double value) { return std::isfinite(value) ? FormatNumber(value) : ""; }
 
 /// A cell of a CSV file with quotes where needed (RFC 4180).
 std::string FormatCell(const TableCell& value, Digits digits) {
