@@ -17,7 +17,8 @@ namespace evo::odometry {
 
 namespace {
 
-// Inlier ratio of a pose between two of the bundle: while the camera stands, the majority of points may be on other cars.
+// Inlier ratio of a pose between two of the bundle: while the camera stands, the majority of points may be on other
+// cars.
 constexpr double kMinInlierRatioBetween = 0.35;
 constexpr double kAdjustmentTime = 0.9;  // ratio of the whole refinement, for the progress
 
@@ -56,8 +57,7 @@ BundleOptions AdjustInRounds(const FinalRefinementOptions& options, const std::v
 }
 
 /// Times of the bundle's poses since the segment's first, s.
-std::vector<double> PoseTimes(const std::vector<Frame>& frames, const Segment& segment,
-                                 const SegmentBundle& bundle) {
+std::vector<double> PoseTimes(const std::vector<Frame>& frames, const Segment& segment, const SegmentBundle& bundle) {
   std::vector<double> times_s;
   for (const std::size_t i : bundle.segment_poses) {
     times_s.push_back(ToSeconds(frames[segment.poses[i].frame].t - frames[segment.poses.front().frame].t));
