@@ -2,7 +2,7 @@
 
 #include "evo/core/parameters.hpp"
 #include "evo/evaluation/evaluation_options.hpp"
-#include "evo/odometry/odometry.hpp"
+#include "evo/odometry/odometry_options.hpp"
 #include "evo/tracking/tracker_options.hpp"
 
 namespace evo::app {

@@ -7,14 +7,15 @@ namespace evo::geometry {
 
 namespace {
 
-constexpr int kNewtonIterations = 30;
-constexpr double kTolerance = 1e-12;  // on the plane z = 1
-constexpr double kLargestResidual = 1e-7;
+constexpr int kNewtonIterations = 30;     // a handful suffice; wide lenses need a dozen near their border
+constexpr double kTolerance = 1e-12;      // of a step, normalized: rounding
+constexpr double kMaxResidual = 1e-7;     // normalized: the iteration has not converged
+constexpr double kMaxAngleMargin = 1e-3;  // rad short of 90 degrees, where the plane z = 1 ends
 
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
-/// Brown-Conrady, with its Jacobian where asked for.
+/// The Brown-Conrady model; `jacobian` may be null.
 Vector2d RadTan(const std::array<double, 5>& k, const Vector2d& p, Matrix2d* jacobian) {
   const double x = p.x();
   const double y = p.y();
@@ -46,13 +47,13 @@ std::optional<Vector2d> UndistortRadTan(const std::array<double, 5>& k, const Ve
   for (int i = 0; i < kNewtonIterations; ++i) {
     Matrix2d jacobian;
     const Vector2d residual = RadTan(k, p, &jacobian) - distorted;
-    // A fold of the lens model: beyond it the inverse is another branch, not the ray that was seen.
+    // The lens model folds: beyond the fold its inverse is another branch, not the observed ray.
     if (!(jacobian.determinant() > 0.0 && jacobian.trace() > 0.0)) return std::nullopt;
     const Vector2d step = jacobian.inverse() * residual;
     p -= step;
     if (step.squaredNorm() < kTolerance * kTolerance) break;
   }
-  if (!((RadTan(k, p, nullptr) - distorted).norm() < kLargestResidual)) return std::nullopt;
+  if (!((RadTan(k, p, nullptr) - distorted).norm() < kMaxResidual)) return std::nullopt;
   return p;
 }
 
@@ -67,8 +68,8 @@ std::optional<Vector2d> UndistortEquidistant(const std::array<double, 5>& k, con
     theta -= step;
     if (std::abs(step) < kTolerance) break;
   }
-  if (!(std::abs(EquidistantRadius(k, theta) - radius) < kLargestResidual)) return std::nullopt;
-  if (!(theta > 0.0 && theta < 0.5 * M_PI - 1e-3)) return std::nullopt;  // not in front of the camera
+  if (!(std::abs(EquidistantRadius(k, theta) - radius) < kMaxResidual)) return std::nullopt;
+  if (!(theta > 0.0 && theta < 0.5 * M_PI - kMaxAngleMargin)) return std::nullopt;  // not in front of the camera
   return distorted * (std::tan(theta) / radius);
 }
 
@@ -76,7 +77,7 @@ std::optional<Vector2d> UndistortEquidistant(const std::array<double, 5>& k, con
 
 Calibration Rectified(const Calibration& calibration) {
   Calibration ideal = calibration;
-  ideal.distortion = Distortion::kRadTan;  // without coefficients that is a pinhole; equidistant would not be
+  ideal.distortion = Distortion::kRadTan;  // a pinhole without coefficients, which equidistant is not
   ideal.coefficients = {};
   return ideal;
 }

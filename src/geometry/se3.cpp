@@ -6,7 +6,7 @@ namespace evo::geometry {
 
 namespace {
 
-// Below this angle (rad) the closed forms lose digits and the series are exact to rounding.
+// rad; below it the closed forms lose digits and the series are exact to rounding.
 constexpr double kSmallAngle = 1e-5;
 
 }  // namespace
@@ -26,7 +26,7 @@ Eigen::Quaterniond Exp(const Eigen::Vector3d& phi) {
 }
 
 Eigen::Vector3d Log(const Eigen::Quaterniond& rotation) {
-  const double sign = rotation.w() < 0 ? -1.0 : 1.0;  // q and -q are the same rotation; take the short way
+  const double sign = rotation.w() < 0 ? -1.0 : 1.0;  // q and -q are the same rotation; this is the shorter one
   const Eigen::Vector3d v = sign * rotation.vec();
   const double sine = v.norm();
   if (sine < kSmallAngle) return 2.0 * v;
@@ -70,6 +70,13 @@ SE3 SE3::Inverse() const {
 
 SE3 SE3::operator*(const SE3& other) const {
   return {rotation_ * other.rotation_, rotation_ * other.translation_ + translation_};
+}
+
+Matrix6d Adjoint(const SE3& T) {
+  Matrix6d adjoint = Matrix6d::Zero();
+  adjoint.topLeftCorner<3, 3>() = adjoint.bottomRightCorner<3, 3>() = T.RotationMatrix();
+  adjoint.topRightCorner<3, 3>() = so3::Hat(T.translation()) * T.RotationMatrix();
+  return adjoint;
 }
 
 SE3 Interpolate(const SE3& a, const SE3& b, double s) {

@@ -9,10 +9,10 @@ namespace evo::geometry {
 
 namespace {
 
-constexpr double kSmallestSine2 = 1e-14;  // squared sine of the angle under which two rays count as parallel
-constexpr int kIterations = 5;
+constexpr double kMinSine2 = 1e-14;  // squared sine of the angle between two rays: parallel to rounding
+constexpr int kIterations = 5;       // converged to rounding from the point nearest to the rays
 
-/// Minimises the summed squared distance to all rays.
+/// The point with the least sum of squared distances to all rays.
 std::optional<Eigen::Vector3d> NearestToRays(std::span<const View> views) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
@@ -23,12 +23,12 @@ std::optional<Eigen::Vector3d> NearestToRays(std::span<const View> views) {
     normal += across;
     right += across * T_world_cam.translation();
   }
-  if (!(normal.determinant() > kSmallestSine2)) return std::nullopt;
+  if (!(normal.determinant() > kMinSine2)) return std::nullopt;
   return normal.ldlt().solve(right);
 }
 
-/// One Gauss-Newton step of the reprojection error; leaves the normal matrix in `normal`. False behind a camera.
-bool Step(std::span<const View> views, Eigen::Vector3d* point, Eigen::Matrix3d* normal) {
+/// One Gauss-Newton step on the reprojection error with its normal matrix `normal`. False behind a camera.
+bool StepGaussNewton(std::span<const View> views, Eigen::Vector3d* point, Eigen::Matrix3d* normal) {
   normal->setZero();
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
   for (const View& view : views) {
@@ -50,12 +50,12 @@ std::optional<PairDepths> TriangulatePair(const Eigen::Vector2d& x1, const Eigen
   const Eigen::Vector3d ray1 = T_2_1.rotation() * x1.homogeneous();
   const Eigen::Vector3d ray2 = x2.homogeneous();
   const Eigen::Vector3d& t = T_2_1.translation();
-  // Normal equations of [R x1, -x2] (Z1, Z2)^T = -t.
+  // Equation 6 as [R x1, -x2] (Z1, Z2)^T = -t and its normal equations.
   const double a = ray1.squaredNorm();
   const double b = ray1.dot(ray2);
   const double c = ray2.squaredNorm();
   const double determinant = a * c - b * b;
-  if (!(determinant > kSmallestSine2 * a * c)) return std::nullopt;
+  if (!(determinant > kMinSine2 * a * c)) return std::nullopt;
   const double right1 = -ray1.dot(t);
   const double right2 = ray2.dot(t);
   return PairDepths{(c * right1 + b * right2) / determinant, (b * right1 + a * right2) / determinant};
@@ -65,19 +65,16 @@ std::optional<TriangulatedPoint> TriangulateViews(std::span<const View> views) {
   if (views.size() < 2) return std::nullopt;
   const auto start = NearestToRays(views);
   if (!start) return std::nullopt;
-  TriangulatedPoint result{*start, Eigen::Matrix3d::Zero(), 0.0};
+  TriangulatedPoint result{*start, Eigen::Matrix3d::Zero()};
   Eigen::Matrix3d normal;
   for (int i = 0; i < kIterations; ++i) {
-    if (!Step(views, &result.position_world, &normal)) return std::nullopt;
+    if (!StepGaussNewton(views, &result.position_world, &normal)) return std::nullopt;
   }
   const Eigen::FullPivLU<Eigen::Matrix3d> inverter(normal);
   if (!inverter.isInvertible()) return std::nullopt;
   result.covariance = inverter.inverse();
-  const Eigen::Vector3d first = result.position_world - views.front().T_cam_world.Inverse().translation();
   for (const View& view : views) {
     if (!((view.T_cam_world * result.position_world).z() > 0.0)) return std::nullopt;
-    const Eigen::Vector3d ray = result.position_world - view.T_cam_world.Inverse().translation();
-    result.parallax = std::max(result.parallax, std::atan2(first.cross(ray).norm(), first.dot(ray)));
   }
   return result;
 }

@@ -15,16 +15,17 @@ namespace evo::geometry {
 
 namespace {
 
-constexpr std::size_t kSampleSize = 8;
-constexpr int kRefinements = 10;
-constexpr double kPromising = 1.5;  // of the best cost so far
-constexpr int kFewestSamples = 40;  // however good the first ones are: there may be a second optimum
+constexpr std::size_t kSampleSize = 8;    // of the eight-point algorithm
+constexpr int kRefineIterations = 10;     // of Gauss-Newton, which converges in a handful
+constexpr int kMaxPolishRounds = 5;       // of refinement and new inliers, which settle in two or three
+constexpr double kPolishCostRatio = 1.5;  // over the best cost so far; a sample that costs more is not refined
+constexpr int kMinSamples = 40;           // even if the first one is good, since there may be a second optimum
 
 using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Hartley's similarity: centroid to the origin, mean distance to sqrt(2).
+/// Hartley's similarity: moves the centroid to the origin and scales the mean distance from it to sqrt(2).
 std::optional<Matrix3d> Normalizer(std::span<const Correspondence> pairs, Vector2d Correspondence::*side) {
   Vector2d mean = Vector2d::Zero();
   for (const auto& pair : pairs) mean += pair.*side;
@@ -44,21 +45,21 @@ bool InFrontOfBoth(const Correspondence& pair, const SE3& T_2_1) {
   return depths && depths->z1 > 0.0 && depths->z2 > 0.0;
 }
 
-/// Of the four motions the one with the most points in front of both cameras.
+/// The motion, of the four, with the most points in front of both cameras.
 SE3 ChooseByCheirality(const Matrix3d& essential, std::span<const Correspondence> pairs) {
   SE3 best;
-  std::ptrdiff_t most = -1;
+  std::ptrdiff_t max_count = -1;
   for (const SE3& motion : DecomposeEssential(essential)) {
     const auto count = std::ranges::count_if(pairs, [&](const auto& pair) { return InFrontOfBoth(pair, motion); });
-    if (count > most) {
-      most = count;
+    if (count > max_count) {
+      max_count = count;
       best = motion;
     }
   }
   return best;
 }
 
-/// dE for the five steps of the refinement: a left turn about x, y, z, and t along its two tangents.
+/// The derivatives of E by the five parameters: left rotations about x, y, z and translations along two tangents.
 std::array<Matrix3d, 5> EssentialDerivatives(const SE3& pose, const Vector3d& tangent1, const Vector3d& tangent2) {
   const Matrix3d rotation = pose.RotationMatrix();
   const Matrix3d hat = so3::Hat(pose.translation());
@@ -84,9 +85,9 @@ double SampsonWithJacobian(const Matrix3d& essential, const std::array<Matrix3d,
   return error;
 }
 
-/// Direction of the translation that alone explains two pairs. Where the views are nearly affine (a narrow lens, a
-/// sideways move), a turn with the translation and all depths reversed explains them almost as well, and eight-point
-/// samples may all end in that second optimum; this start leads to the first.
+/// The direction of the translation that explains two pairs without a rotation. In nearly affine views (narrow lens,
+/// sideways motion) a rotation with reversed translation and depths explains all pairs almost as well, and all
+/// eight-point samples may end in that second optimum; this start leads to the first.
 std::optional<Vector3d> PureTranslation(const Correspondence& a, const Correspondence& b) {
   const Vector3d normal_a = a.x1.homogeneous().cross(a.x2.homogeneous());
   const Vector3d normal_b = b.x1.homogeneous().cross(b.x2.homogeneous());
@@ -95,21 +96,22 @@ std::optional<Vector3d> PureTranslation(const Correspondence& a, const Correspon
   return t.normalized();
 }
 
-/// A motion with its inliers; `cost` sums the squared errors, cut off at the threshold (smaller is better).
+/// A motion with its inliers; `cost` is the sum of the truncated squared errors (MSAC; P. H. S. Torr, A. Zisserman,
+/// 2000).
 struct Candidate {
   RelativePose pose;
   double cost = 0.0;
 };
 
-Candidate Judge(std::span<const Correspondence> pairs, const SE3& T_2_1, double threshold) {
-  const Matrix3d essential = Essential(T_2_1);
+Candidate ScoreMotion(std::span<const Correspondence> pairs, const SE3& T_2_1, double max_error) {
+  const Matrix3d essential = EssentialMatrix(T_2_1);
   Candidate result{{T_2_1, std::vector<bool>(pairs.size()), 0}, 0.0};
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const double error = std::abs(SampsonError(essential, pairs[i]));
-    const bool inlier = error < threshold && InFrontOfBoth(pairs[i], T_2_1);
+    const bool inlier = error < max_error && InFrontOfBoth(pairs[i], T_2_1);
     result.pose.inliers[i] = inlier;
     result.pose.inlier_count += inlier ? 1 : 0;
-    result.cost += inlier ? error * error : threshold * threshold;
+    result.cost += inlier ? error * error : max_error * max_error;
   }
   return result;
 }
@@ -122,22 +124,23 @@ std::vector<Correspondence> Select(std::span<const Correspondence> pairs, const 
   return selected;
 }
 
-/// Refines on the inliers while that helps.
-Candidate Polish(std::span<const Correspondence> pairs, Candidate best, double threshold) {
-  for (int round = 0; round < 5 && best.pose.inlier_count >= static_cast<int>(kSampleSize); ++round) {
+/// Refines a motion on its inliers as long as its cost falls.
+Candidate Polish(std::span<const Correspondence> pairs, Candidate best, double max_error) {
+  for (int round = 0; round < kMaxPolishRounds && best.pose.inlier_count >= static_cast<int>(kSampleSize); ++round) {
     const SE3 refined = RefineRelativePose(Select(pairs, best.pose.inliers), best.pose.T_2_1);
-    Candidate candidate = Judge(pairs, refined, threshold);
+    Candidate candidate = ScoreMotion(pairs, refined, max_error);
     if (!(candidate.cost < best.cost)) break;
     best = std::move(candidate);
   }
   return best;
 }
 
+/// RANSAC's number of samples for that inlier ratio (Multiple View Geometry, 4.18).
 int SamplesNeeded(int inliers, std::size_t total, const RelativePoseOptions& options) {
-  const double all_good = std::pow(static_cast<double>(inliers) / static_cast<double>(total), kSampleSize);
-  if (all_good > 1.0 - 1e-9) return 0;
-  const double needed = std::log1p(-options.confidence) / std::log1p(-all_good);
-  return needed < options.iterations ? static_cast<int>(needed) + 1 : options.iterations;
+  const double all_inliers = std::pow(static_cast<double>(inliers) / static_cast<double>(total), kSampleSize);
+  if (all_inliers > 1.0 - 1e-9) return 0;
+  const double needed = std::log1p(-options.confidence) / std::log1p(-all_inliers);
+  return needed < options.max_samples ? static_cast<int>(needed) + 1 : options.max_samples;
 }
 
 }  // namespace
@@ -151,7 +154,7 @@ std::optional<Matrix3d> EightPoint(std::span<const Correspondence> pairs) {
   for (const auto& pair : pairs) {
     const Vector3d a = *normalizer1 * pair.x1.homogeneous();
     const Vector3d b = *normalizer2 * pair.x2.homogeneous();
-    Eigen::Matrix<double, 9, 1> row;  // equation 12, e in the order of rows of E
+    Eigen::Matrix<double, 9, 1> row;  // equation 12; e by the rows of E as in (11) and (13)
     row << b.x() * a, b.y() * a, a;
     normal += row * row.transpose();
   }
@@ -170,15 +173,15 @@ std::array<SE3, 4> DecomposeEssential(const Matrix3d& essential) {
   Matrix3d v = svd.matrixV();
   if (u.determinant() < 0) u.col(2) *= -1.0;
   if (v.determinant() < 0) v.col(2) *= -1.0;
-  Matrix3d quarter_turn;
-  quarter_turn << 0, -1, 0, 1, 0, 0, 0, 0, 1;
-  const Eigen::Quaterniond first(Matrix3d(u * quarter_turn * v.transpose()));
-  const Eigen::Quaterniond second(Matrix3d(u * quarter_turn.transpose() * v.transpose()));
+  Matrix3d W;  // rotation by 90 degrees about z
+  W << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  const Eigen::Quaterniond first(Matrix3d(u * W * v.transpose()));
+  const Eigen::Quaterniond second(Matrix3d(u * W.transpose() * v.transpose()));
   const Vector3d t = u.col(2);
   return {SE3(first, t), SE3(first, -t), SE3(second, t), SE3(second, -t)};
 }
 
-Matrix3d Essential(const SE3& T_2_1) { return so3::Hat(T_2_1.translation()) * T_2_1.RotationMatrix(); }
+Matrix3d EssentialMatrix(const SE3& T_2_1) { return so3::Hat(T_2_1.translation()) * T_2_1.RotationMatrix(); }
 
 double SampsonError(const Matrix3d& essential, const Correspondence& pair) {
   const Vector3d line2 = essential * pair.x1.homogeneous();
@@ -189,11 +192,11 @@ double SampsonError(const Matrix3d& essential, const Correspondence& pair) {
 
 SE3 RefineRelativePose(std::span<const Correspondence> pairs, const SE3& T_2_1) {
   SE3 pose(T_2_1.rotation(), T_2_1.translation().normalized());
-  for (int i = 0; i < kRefinements; ++i) {
+  for (int i = 0; i < kRefineIterations; ++i) {
     const Vector3d t = pose.translation();
     const Vector3d tangent1 = t.unitOrthogonal();
     const Vector3d tangent2 = t.cross(tangent1);
-    const Matrix3d essential = Essential(pose);
+    const Matrix3d essential = EssentialMatrix(pose);
     const auto derivatives = EssentialDerivatives(pose, tangent1, tangent2);
     Eigen::Matrix<double, 5, 5> normal = Eigen::Matrix<double, 5, 5>::Zero();
     Eigen::Matrix<double, 5, 1> gradient = Eigen::Matrix<double, 5, 1>::Zero();
@@ -215,6 +218,7 @@ SE3 RefineRelativePose(std::span<const Correspondence> pairs, const SE3& T_2_1) 
 std::optional<RelativePose> EstimateRelativePose(std::span<const Correspondence> pairs,
                                                  const RelativePoseOptions& options) {
   if (pairs.size() < kSampleSize) return std::nullopt;
+  // std::mt19937 is specified bit by bit, and core's generator would draw other samples: other maps.
   std::mt19937 random(options.seed);
   std::vector<std::size_t> order(pairs.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -222,16 +226,15 @@ std::optional<RelativePose> EstimateRelativePose(std::span<const Correspondence>
   Candidate best;
   best.cost = std::numeric_limits<double>::infinity();
   const auto consider = [&](const SE3& motion) {
-    const Candidate candidate = Judge(pairs, motion, options.threshold);
-    // A sample's motion is far from the best that its inliers allow: every promising one is polished before it is
-    // judged.
-    if (!(candidate.cost < kPromising * best.cost)) return;
-    Candidate polished = Polish(pairs, candidate, options.threshold);
+    const Candidate candidate = ScoreMotion(pairs, motion, options.max_sampson_error);
+    // A sample's motion is far from the best for its inliers, so costs are compared after the refinement.
+    if (!(candidate.cost < kPolishCostRatio * best.cost)) return;
+    Candidate polished = Polish(pairs, candidate, options.max_sampson_error);
     if (polished.cost < best.cost) best = std::move(polished);
   };
-  int needed = options.iterations;
-  for (int i = 0; i < std::max(needed, kFewestSamples); ++i) {
-    for (std::size_t k = 0; k < kSampleSize; ++k) {  // partial Fisher-Yates; the modulo's bias is below 1e-6
+  int needed = options.max_samples;
+  for (int i = 0; i < std::max(needed, kMinSamples); ++i) {
+    for (std::size_t k = 0; k < kSampleSize; ++k) {  // a partial Fisher-Yates shuffle; the modulo's bias is below 1e-6
       std::swap(order[k], order[k + random() % (order.size() - k)]);
       sample[k] = pairs[order[k]];
     }
@@ -240,7 +243,7 @@ std::optional<RelativePose> EstimateRelativePose(std::span<const Correspondence>
       consider(SE3(Eigen::Quaterniond::Identity(), *translation));
       consider(SE3(Eigen::Quaterniond::Identity(), -*translation));
     }
-    needed = std::min(options.iterations, SamplesNeeded(best.pose.inlier_count, pairs.size(), options));
+    needed = std::min(options.max_samples, SamplesNeeded(best.pose.inlier_count, pairs.size(), options));
   }
   if (best.pose.inlier_count < static_cast<int>(kSampleSize)) return std::nullopt;
   return best.pose;

@@ -1,133 +1,141 @@
 #include "evo/odometry/odometry.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <string>
 
 #include "evo/core/error.hpp"
+#include "evo/core/parallel.hpp"
+#include "evo/odometry/resampling.hpp"
+#include "odometry/bundle/final_refinement.hpp"
+#include "odometry/frontend/frame_builder.hpp"
+#include "odometry/frontend/frame_handler.hpp"
+#include "odometry/scale/ground_scale.hpp"
+#include "odometry/segment.hpp"
 
 namespace evo::odometry {
 
 namespace {
 
-/// The run cut into its segments, with the poses as the tracking left them.
+void LogTracks(bool resampled, const ResamplingOptions& options) {
+  if (resampled) {
+    spdlog::info("odometry: asynchronous tracks, resampled every {} s", options.frame_interval_s);
+  } else {
+    spdlog::info("odometry: the tracks come in frames and are used as they are");
+  }
+}
+
+/// The segments of the run with the poses of the tracking. The last one holds the points of all.
 std::vector<Segment> CutSegments(const FrameHandler& handler) {
   std::vector<Segment> segments(handler.bootstraps().size());
   for (std::size_t i = 0; i < handler.records().size(); ++i) {
     const FrameRecord& record = handler.records()[i];
     if (record.segment < 0) continue;
-    Segment& segment = segments[record.segment];
-    segment.frames.push_back(static_cast<int>(i));
-    segment.T_cam_world.push_back(handler.Pose(static_cast<int>(i)));
-    segment.inliers.push_back(record.inliers);
+    const int frame = static_cast<int>(i);
+    segments[record.segment].poses.push_back({frame, handler.Pose(frame), record.inliers});
   }
+  segments.back().points = handler.Points();
   return segments;
 }
 
-/// How the refinement of a segment has moved its last frame that has had a pose before and after, in the world.
-geometry::SE3 MoveOfEnd(const std::vector<int>& old_frames, const std::vector<geometry::SE3>& old_poses,
-                        const Segment& segment) {
-  for (std::size_t old = old_frames.size(); old-- > 0;) {
-    const auto at = std::ranges::lower_bound(segment.frames, old_frames[old]);
-    if (at == segment.frames.end() || *at != old_frames[old]) continue;
-    return segment.T_cam_world[static_cast<std::size_t>(at - segment.frames.begin())].Inverse() * old_poses[old];
+/// The motion of the world by which the refinement of a segment moved its last frame with a pose before and after.
+geometry::SE3 EndCorrection(const std::vector<SegmentPose>& old_poses, const std::vector<SegmentPose>& poses) {
+  for (std::size_t old = old_poses.size(); old-- > 0;) {
+    const auto found = std::ranges::lower_bound(poses, old_poses[old].frame, {}, &SegmentPose::frame);
+    if (found == poses.end() || found->frame != old_poses[old].frame) continue;
+    return found->T_cam_world.Inverse() * old_poses[old].T_cam_world;
   }
   return {};
 }
 
-/// Refines every segment and carries each change of a segment's end on to those after it.
+/// Refines every segment and moves those after it with its end.
 void RefineSegments(const FinalRefinementOptions& options, const std::vector<Frame>& frames,
                     const std::function<void(double)>& progress, ThreadPool* pool, std::vector<Segment>* segments) {
   geometry::SE3 T_new_old;  // of the world
-  int before = 0;
+  int begin_frame = 0;
   const double count = static_cast<double>(segments->size());
   for (std::size_t i = 0; i < segments->size(); ++i) {
     Segment& segment = (*segments)[i];
-    for (geometry::SE3& pose : segment.T_cam_world) pose = pose * T_new_old.Inverse();
+    for (SegmentPose& pose : segment.poses) pose.T_cam_world = pose.T_cam_world * T_new_old.Inverse();
     for (Point& point : segment.points) point.position = T_new_old * point.position;
-    const std::vector<int> old_frames = segment.frames;
-    const std::vector<geometry::SE3> old_poses = segment.T_cam_world;
-    const int after = i + 1 < segments->size() ? (*segments)[i + 1].frames.front() : static_cast<int>(frames.size());
-    RefineSegment(
-        options, frames, before, after, [&](double share) { progress((static_cast<double>(i) + share) / count); }, pool,
-        &segment);
-    T_new_old = MoveOfEnd(old_frames, old_poses, segment) * T_new_old;
-    before = segment.frames.back() + 1;
+    const std::vector<SegmentPose> old_poses = segment.poses;
+    const int end_frame =
+        i + 1 < segments->size() ? (*segments)[i + 1].poses.front().frame : static_cast<int>(frames.size());
+    const auto segment_progress = [&](double ratio) { progress((static_cast<double>(i) + ratio) / count); };
+    RefineSegment(options, frames, begin_frame, end_frame, segment_progress, pool, &segment);
+    T_new_old = EndCorrection(old_poses, segment.poses) * T_new_old;
+    begin_frame = segment.poses.back().frame + 1;
   }
 }
 
-/// Of the camera in the world, from that of the left twist of T_cam_world.
-geometry::Matrix6d InWorld(const geometry::SE3& T_cam_world, const geometry::Matrix6d& covariance) {
-  geometry::Matrix6d turn = geometry::Matrix6d::Zero();
-  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = T_cam_world.Inverse().RotationMatrix();
-  return turn * covariance * turn.transpose();
+/// The covariance of the camera's position and rotation along the world's axes, from that of the left twist of
+/// T_cam_world.
+geometry::Matrix6d RotateToWorld(const geometry::SE3& T_cam_world, const geometry::Matrix6d& covariance) {
+  geometry::Matrix6d rotation = geometry::Matrix6d::Zero();
+  rotation.topLeftCorner<3, 3>() = rotation.bottomRightCorner<3, 3>() = T_cam_world.Inverse().RotationMatrix();
+  return rotation * covariance * rotation.transpose();
 }
 
-void ListLost(const std::vector<Frame>& frames, OdometryResult* result) {
-  auto pose = result->trajectory.begin();
+void CollectSegment(const Segment& segment, const std::vector<Frame>& frames, OdometryResult* result) {
+  const bool scale_is_free = !result->ground || !result->ground->metric;
+  const auto covariances = segment.uncertainty.Covariances(scale_is_free);
+  for (std::size_t i = 0; i < segment.poses.size(); ++i) {
+    const SegmentPose& pose = segment.poses[i];
+    result->trajectory.push_back({frames[pose.frame].t, pose.T_cam_world.Inverse()});
+    result->inliers.push_back(pose.inliers);
+    if (covariances.empty()) continue;
+    result->covariances.push_back({frames[pose.frame].t, RotateToWorld(pose.T_cam_world, covariances[i])});
+  }
+  result->points.insert(result->points.end(), segment.points.begin(), segment.points.end());
+}
+
+/// Stamps of the frames without a pose between the first and the last pose.
+std::vector<TimeNs> FindLostFrames(const std::vector<Frame>& frames, const geometry::Trajectory& trajectory) {
+  std::vector<TimeNs> lost;
+  auto pose = trajectory.begin();
   for (const Frame& frame : frames) {
-    if (pose == result->trajectory.end()) break;
+    if (pose == trajectory.end()) break;
     if (pose->t == frame.t) {
       ++pose;
-    } else if (pose != result->trajectory.begin()) {
-      result->lost.push_back(frame.t);
+    } else if (pose != trajectory.begin()) {
+      lost.push_back(frame.t);
     }
   }
+  return lost;
 }
 
 }  // namespace
-
-void Register(Parameters& parameters, OdometryOptions& options) {
-  Register(parameters, options.resampling);
-  Register(parameters, options.frame_handler);
-  Register(parameters, options.final_refinement);
-  Register(parameters, options.ground);
-}
 
 OdometryResult RunOdometry(const events::Tracks& tracks, const geometry::Camera& camera, const OdometryOptions& options,
                            int threads, const OdometryProgress& progress) {
   OdometryResult result;
   result.resampled = !AreSynchronous(tracks);
-  if (result.resampled) {
-    spdlog::info("odometry: asynchronous tracks, resampled every {} s", options.resampling.frame_interval_s);
-  } else {
-    spdlog::info("odometry: the tracks come in frames and are used as they are");
-  }
+  LogTracks(result.resampled, options.resampling);
   const std::vector<Frame> frames =
       BuildFrames(result.resampled ? Resample(tracks, options.resampling) : tracks, camera);
   result.frames = static_cast<int>(frames.size());
 
   FrameHandler handler(options.frame_handler, frames, camera.focal_px(), threads);
-  handler.Run([&](double done) { progress(OdometryStage::kFrames, done); });
+  handler.Run([&](double ratio) { progress(OdometryStage::kFrames, ratio); });  // equations 1-13
   if (handler.bootstraps().empty()) {
-    throw Error(ErrorKind::kTrackingLost, "no pair of the " + std::to_string(frames.size()) +
-                                              " frames could start a map; at the end: " + handler.obstacle());
-  }
-  std::vector<Segment> segments = CutSegments(handler);
-  segments.back().points = handler.Points();
-  if (options.final_refinement.enabled) {
-    ThreadPool pool(threads);
-    RefineSegments(
-        options.final_refinement, frames, [&](double done) { progress(OdometryStage::kRefinement, done); }, &pool,
-        &segments);
-  }
-  const bool grounded = options.ground.hold_height || options.ground.camera_height_m > 0.0;
-  if (grounded) result.ground = ScaleByGround(options.ground, frames, &segments);
-  const bool scale_is_free = !result.ground || !result.ground->metric;
-  for (const Segment& segment : segments) {
-    const auto covariances = segment.Covariances(scale_is_free);
-    for (std::size_t i = 0; i < segment.frames.size(); ++i) {
-      result.trajectory.push_back({frames[segment.frames[i]].t, segment.T_cam_world[i].Inverse()});
-      result.inliers.push_back(segment.inliers[i]);
-      if (covariances.empty()) continue;
-      result.covariances.push_back({frames[segment.frames[i]].t, InWorld(segment.T_cam_world[i], covariances[i])});
-    }
-    result.points.insert(result.points.end(), segment.points.begin(), segment.points.end());
+    throw Error(ErrorKind::kTrackingLost, fmt::format("no pair of the {} frames could start a map; at the end: {}",
+                                                      frames.size(), handler.failure_reason()));
   }
   result.key_frames = static_cast<int>(handler.key_frames().size());
   for (const int index : handler.bootstraps()) result.bootstraps.push_back(frames[index].t);
-  ListLost(frames, &result);
+
+  std::vector<Segment> segments = CutSegments(handler);
+  if (options.final_refinement.enabled) {
+    ThreadPool pool(threads);
+    const auto refinement_progress = [&](double ratio) { progress(OdometryStage::kRefinement, ratio); };
+    RefineSegments(options.final_refinement, frames, refinement_progress, &pool, &segments);
+  }
+  if (options.ground.hold_height || options.ground.camera_height_m > 0.0) {
+    result.ground = ScaleByGround(options.ground, frames, &segments);
+  }
+  for (const Segment& segment : segments) CollectSegment(segment, frames, &result);
+  result.lost = FindLostFrames(frames, result.trajectory);
   return result;
 }
 

@@ -9,7 +9,7 @@
 namespace evo::geometry {
 namespace {
 
-TEST(Camera, UndistortUndoesDistortOverTheWholeSensor) {
+TEST(Camera, UndistortInvertsDistortOnTheWholeSensor) {
   for (const auto& calibration : {MvsecDavis346(), UzhDavis240c()}) {
     const Camera camera(calibration);
     for (int y = 0; y < camera.height(); y += 7) {
@@ -22,7 +22,7 @@ TEST(Camera, UndistortUndoesDistortOverTheWholeSensor) {
   }
 }
 
-TEST(Camera, EquidistantFollowsKannalaBrandt) {
+TEST(Camera, EquidistantIsKannalaBrandt) {
   const Camera camera(MvsecDavis346());
   const double theta = 0.5;
   const auto& k = camera.calibration().coefficients;
@@ -33,7 +33,7 @@ TEST(Camera, EquidistantFollowsKannalaBrandt) {
   EXPECT_NEAR(pixel.y(), camera.calibration().cy, 1e-9);
 }
 
-TEST(Camera, RadTanFollowsBrownConrady) {
+TEST(Camera, RadTanIsBrownConrady) {
   const Camera camera(UzhDavis240c());
   const auto& k = camera.calibration().coefficients;
   const double x = 0.3, y = -0.2, r2 = x * x + y * y;
@@ -45,7 +45,7 @@ TEST(Camera, RadTanFollowsBrownConrady) {
   EXPECT_NEAR(pixel.y(), camera.calibration().fy * yd + camera.calibration().cy, 1e-9);
 }
 
-TEST(Camera, RefusesPixelsThatNoRayReaches) {
+TEST(Camera, RejectsPixelsWithoutARay) {
   Calibration strong = UzhDavis240c();
   strong.coefficients = {-0.8, 0, 0, 0, 0};
   EXPECT_FALSE(Camera(strong).Undistort({5000, 5000}));

@@ -16,7 +16,7 @@ Vector6d RandomTwist(std::mt19937* random, double angle) {
   return xi;
 }
 
-TEST(SE3, LogUndoesExpAtEveryAngle) {
+TEST(SE3, LogInvertsExpAtEveryAngle) {
   std::mt19937 random(1);
   for (const double angle : {1e-12, 1e-7, 1e-5, 1e-3, 0.5, 2.0, 3.1}) {
     const Vector6d xi = RandomTwist(&random, angle);
@@ -58,7 +58,16 @@ TEST(SE3, LeftJacobianMatchesFiniteDifferences) {
   }
 }
 
-TEST(SE3, InterpolatesAlongTheShortWay) {
+TEST(SE3, AdjointTakesATwistAcrossAMotion) {
+  std::mt19937 random(6);
+  for (int trial = 0; trial < 10; ++trial) {
+    const SE3 T = SE3::Exp(RandomTwist(&random, 1.2));
+    const Vector6d xi = RandomTwist(&random, 0.7);
+    EXPECT_LT(((T * SE3::Exp(xi)).Matrix() - (SE3::Exp(Adjoint(T) * xi) * T).Matrix()).norm(), 1e-9) << trial;
+  }
+}
+
+TEST(SE3, InterpolatesAlongTheShorterArc) {
   const SE3 a;
   const SE3 b(Eigen::Quaterniond(Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitZ())), Eigen::Vector3d(2, 0, 0));
   const SE3 half = Interpolate(a, b, 0.5);

@@ -5,9 +5,9 @@
 namespace evo::geometry {
 namespace {
 
-TEST(Trajectory, PosesAreInterpolatedButNotExtrapolatedNorAcrossHoles) {
-  const SE3 turned(so3::Exp({0, 0, 0.4}), Eigen::Vector3d(2, 0, 0));
-  const Trajectory trajectory{{100, SE3()}, {200, turned}, {900, turned}};
+TEST(Trajectory, InterpolatesPosesButNotBeyondTheEndsOrAcrossGaps) {
+  const SE3 rotated(so3::Exp({0, 0, 0.4}), Eigen::Vector3d(2, 0, 0));
+  const Trajectory trajectory{{100, SE3()}, {200, rotated}, {900, rotated}};
   EXPECT_FALSE(PoseAt({}, 100, 1000));
   EXPECT_FALSE(PoseAt(trajectory, 99, 1000));
   EXPECT_FALSE(PoseAt(trajectory, 901, 1000));
@@ -19,7 +19,7 @@ TEST(Trajectory, PosesAreInterpolatedButNotExtrapolatedNorAcrossHoles) {
   EXPECT_NEAR(so3::Log(middle->rotation()).z(), 0.1, 1e-12);
 }
 
-TEST(Trajectory, PathLengthIsSummedFromPoseToPose) {
+TEST(Trajectory, PathLengthIsTheSumOfSteps) {
   EXPECT_EQ(PathLength({}), 0.0);
   const SE3 corner({1, 0, 0, 0}, Eigen::Vector3d(3, 0, 4));
   EXPECT_DOUBLE_EQ(PathLength({{0, SE3()}, {1, corner}, {2, corner}, {3, SE3()}}), 10.0);

@@ -10,7 +10,7 @@
 namespace evo::geometry {
 namespace {
 
-/// Pairs of a forward-moving camera that also turns a little; `noise` on the plane z = 1.
+/// Pairs of a forward-moving, slightly rotating camera; `noise` on the normalized plane z = 1.
 std::vector<Correspondence> ForwardDrive(const SE3& T_2_1, int count, double noise, std::uint32_t seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> side(-0.7, 0.7), depth(4.0, 40.0);
@@ -40,22 +40,22 @@ TEST(TwoView, EightPointIsExactWithoutNoise) {
   const auto essential = EightPoint(pairs);
   ASSERT_TRUE(essential);
   for (const auto& pair : pairs) EXPECT_NEAR(SampsonError(*essential, pair), 0.0, 1e-9);
-  const Eigen::Matrix3d truth = Essential({Motion().rotation(), Motion().translation().normalized()});
+  const Eigen::Matrix3d truth = EssentialMatrix({Motion().rotation(), Motion().translation().normalized()});
   EXPECT_LT(std::min((*essential - truth).norm(), (*essential + truth).norm()), 1e-7);
 }
 
-TEST(TwoView, DecompositionHoldsTheTrueMotion) {
+TEST(TwoView, DecompositionContainsTheTrueMotion) {
   const SE3 truth(Motion().rotation(), Motion().translation().normalized());
-  double smallest = 10.0;
-  for (const SE3& motion : DecomposeEssential(Essential(truth))) {
-    const Eigen::Matrix3d essential = Essential(motion);
-    EXPECT_LT(std::min((essential - Essential(truth)).norm(), (essential + Essential(truth)).norm()), 1e-9);
-    smallest = std::min(smallest, (motion.Matrix() - truth.Matrix()).norm());
+  double min_error = 10.0;
+  for (const SE3& motion : DecomposeEssential(EssentialMatrix(truth))) {
+    const Eigen::Matrix3d essential = EssentialMatrix(motion);
+    EXPECT_LT(std::min((essential - EssentialMatrix(truth)).norm(), (essential + EssentialMatrix(truth)).norm()), 1e-9);
+    min_error = std::min(min_error, (motion.Matrix() - truth.Matrix()).norm());
   }
-  EXPECT_LT(smallest, 1e-9);
+  EXPECT_LT(min_error, 1e-9);
 }
 
-TEST(TwoView, FewerThanEightPairsGiveNothing) {
+TEST(TwoView, NeedsEightPairs) {
   EXPECT_FALSE(EightPoint(ForwardDrive(Motion(), 7, 0.0, 1)));
   EXPECT_FALSE(EstimateRelativePose(ForwardDrive(Motion(), 7, 0.0, 1), {}));
 }
@@ -66,7 +66,7 @@ TEST(TwoView, RansacFindsForwardMotionAmongOutliers) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> far(-0.2, 0.2);
     for (int i = 0; i < 16; ++i) pairs[5 * i].x2 += Eigen::Vector2d(far(random), far(random));
-    const auto pose = EstimateRelativePose(pairs, {.threshold = 1.5 / 226.0, .seed = seed});
+    const auto pose = EstimateRelativePose(pairs, {.max_sampson_error = 1.5 / 226.0, .seed = seed});
     ASSERT_TRUE(pose) << seed;
     EXPECT_GE(pose->inlier_count, 58) << seed;
     EXPECT_LT(RotationError(pose->T_2_1, Motion()), 0.005) << seed;
@@ -74,14 +74,14 @@ TEST(TwoView, RansacFindsForwardMotionAmongOutliers) {
   }
 }
 
-TEST(TwoView, SeesThroughTheReversalOfDepthInNearlyAffineViews) {
-  // A narrow lens slides 2 cm sideways past things 0.6 to 1.5 m away: a turn with all depths reversed fits almost as
+TEST(TwoView, ResolvesTheDepthReversalOfNearlyAffineViews) {
+  // A narrow lens moves 2 cm sideways past points 0.6 to 1.5 m away: a rotation with all depths reversed fits almost as
   // well as the truth.
   const SE3 truth(Eigen::Quaterniond::Identity(), Eigen::Vector3d(-0.02, 0.0, 0.0));
   int right = 0;
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     std::mt19937 random(seed);
-    std::uniform_real_distribution<double> x(-0.36, 0.36), y(-0.27, 0.27), depth(0.6, 1.5), stray(-0.02, 0.02);
+    std::uniform_real_distribution<double> x(-0.36, 0.36), y(-0.27, 0.27), depth(0.6, 1.5), outlier(-0.02, 0.02);
     std::normal_distribution<double> noise(0.0, 0.5 / 335.0);
     std::vector<Correspondence> pairs;
     for (int i = 0; i < 90; ++i) {
@@ -89,16 +89,16 @@ TEST(TwoView, SeesThroughTheReversalOfDepthInNearlyAffineViews) {
       const Eigen::Vector3d q = truth * p;
       pairs.push_back({p.head<2>() / p.z() + Eigen::Vector2d(noise(random), noise(random)),
                        q.head<2>() / q.z() + Eigen::Vector2d(noise(random), noise(random))});
-      if (i % 7 == 0) pairs.back().x2 += Eigen::Vector2d(stray(random), stray(random));
+      if (i % 7 == 0) pairs.back().x2 += Eigen::Vector2d(outlier(random), outlier(random));
     }
-    const auto pose = EstimateRelativePose(pairs, {.threshold = 1.5 / 335.0, .seed = seed});
+    const auto pose = EstimateRelativePose(pairs, {.max_sampson_error = 1.5 / 335.0, .seed = seed});
     ASSERT_TRUE(pose);
     right += DirectionError(pose->T_2_1, truth) < 0.7 ? 1 : 0;
   }
   EXPECT_GE(right, 19);
 }
 
-TEST(TwoView, RefinementBeatsTheEightPointStart) {
+TEST(TwoView, RefinementLowersTheCostOfTheEightPointStart) {
   double before = 0.0, after = 0.0;
   for (std::uint32_t seed = 1; seed <= 10; ++seed) {
     const auto pairs = ForwardDrive(Motion(), 60, 0.4 / 226.0, seed);
@@ -116,7 +116,7 @@ TEST(TwoView, RefinementBeatsTheEightPointStart) {
     after += RotationError(refined, Motion()) + DirectionError(refined, Motion());
     const auto cost = [&](const SE3& motion) {
       double sum = 0.0;
-      for (const auto& pair : pairs) sum += std::pow(SampsonError(Essential(motion), pair), 2);
+      for (const auto& pair : pairs) sum += std::pow(SampsonError(EssentialMatrix(motion), pair), 2);
       return sum;
     };
     EXPECT_LT(cost(refined), cost({Motion().rotation(), Motion().translation().normalized()})) << seed;

@@ -1,4 +1,4 @@
-#include "evo/odometry/bootstrap.hpp"
+#include "odometry/frontend/bootstrap.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "odometry/drive_messages.hpp"
+
 namespace evo::odometry {
 namespace {
 
@@ -19,9 +21,9 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 
 struct Scene {
   int points = 100;
-  double outlier_share = 0.0;                      // of tracks that move by themselves
-  Eigen::Vector3d step = Eigen::Vector3d::Zero();  // of the camera from frame to frame
-  Eigen::Vector3d turn = Eigen::Vector3d::Zero();  // likewise, rad
+  double outlier_ratio = 0.0;                          // of tracks on moving objects
+  Eigen::Vector3d step = Eigen::Vector3d::Zero();      // of the camera between frames
+  Eigen::Vector3d rotation = Eigen::Vector3d::Zero();  // the same, rad
 };
 
 struct Recording {
@@ -29,26 +31,27 @@ struct Recording {
   std::vector<bool> outliers;  // of the tracks
 };
 
-/// Points 4 to 20 away, seen by a camera without distortion as long as they are in the image.
+/// Points at depths of 4 to 20, observed by a camera without distortion while they are in the image.
 Recording Record(const Scene& scene, std::uint32_t seed) {
   std::mt19937 random(seed);
-  std::uniform_real_distribution<double> x(-170.0, 170.0), y(-125.0, 125.0), depth(4.0, 20.0), stray(-2.0, 2.0);
+  std::uniform_real_distribution<double> x(-170.0, 170.0), y(-125.0, 125.0), depth(4.0, 20.0), drift(-2.0, 2.0);
   std::normal_distribution<double> noise(0.0, kNoisePx);
   std::vector<Eigen::Vector3d> points;
-  std::vector<Eigen::Vector2d> strays;  // px a frame
+  std::vector<Eigen::Vector2d> drifts;  // px a frame
   Recording recording;
   for (int p = 0; p < scene.points; ++p) {
     points.emplace_back(depth(random) * Eigen::Vector3d(x(random) / kFocal, y(random) / kFocal, 1.0));
-    recording.outliers.push_back(p < scene.outlier_share * scene.points);
-    strays.emplace_back(Eigen::Vector2d::Zero());
-    if (recording.outliers.back()) strays.back() = {stray(random), stray(random)};
+    recording.outliers.push_back(p < scene.outlier_ratio * scene.points);
+    drifts.emplace_back(Eigen::Vector2d::Zero());
+    if (recording.outliers.back()) drifts.back() = {drift(random), drift(random)};
   }
   for (int i = 0; i < 40; ++i) {
-    Frame frame{FromSeconds(0.02) * i, geometry::SE3(geometry::so3::Exp(i * scene.turn), i * scene.step).Inverse(), {}};
+    Frame frame{
+        FromSeconds(0.02) * i, geometry::SE3(geometry::so3::Exp(i * scene.rotation), i * scene.step).Inverse(), {}};
     for (int p = 0; p < scene.points; ++p) {
       const Eigen::Vector3d q = frame.T_cam_world * points[p];
       const Eigen::Vector2d px =
-          kFocal * q.head<2>() / q.z() + i * strays[p] + Eigen::Vector2d(noise(random), noise(random));
+          kFocal * q.head<2>() / q.z() + i * drifts[p] + Eigen::Vector2d(noise(random), noise(random));
       if (q.z() < 1.0 || std::abs(px.x()) > 172.0 || std::abs(px.y()) > 129.0) continue;
       frame.features.push_back({p, px / kFocal, kFocal * Eigen::Matrix2d::Identity()});
     }
@@ -57,38 +60,38 @@ Recording Record(const Scene& scene, std::uint32_t seed) {
   return recording;
 }
 
-/// The first map, or why there is none.
-std::optional<Bootstrap> FirstMap(const Recording& recording, std::string* obstacle = nullptr,
+/// The first map, or the failure reason.
+std::optional<Bootstrap> FirstMap(const Recording& recording, std::string* failure_reason = nullptr,
                                   const BootstrapOptions& options = {}) {
   Bootstrapper bootstrapper(options, recording.frames, kFocal);
   for (int i = 0; i < static_cast<int>(recording.frames.size()); ++i) {
     if (auto bootstrap = bootstrapper.Add(i)) return bootstrap;
   }
-  if (obstacle) *obstacle = bootstrapper.obstacle();
+  if (failure_reason) *failure_reason = bootstrapper.failure_reason();
   return std::nullopt;
 }
 
-enum class Way { kForward, kSideways, kOblique };
+enum class Motion { kForward, kSideways, kOblique };
 
-Scene RandomScene(Way way, std::uint32_t seed) {
+Scene RandomScene(Motion motion, std::uint32_t seed) {
   std::mt19937 random(seed);
-  std::uniform_real_distribution<double> share(0.0, 1.0), both(-1.0, 1.0);
+  std::uniform_real_distribution<double> unit(0.0, 1.0), both(-1.0, 1.0);
   const double angle = std::numbers::pi * both(random);
   const Eigen::Vector3d sideways(std::cos(angle), std::sin(angle), 0.0);
   const double forward = both(random);
-  Scene scene{.points = 60 + static_cast<int>(91 * share(random)), .outlier_share = 0.2 + 0.1 * share(random)};
-  scene.turn = 0.002 * Eigen::Vector3d(both(random), both(random), both(random));
+  Scene scene{.points = 60 + static_cast<int>(91 * unit(random)), .outlier_ratio = 0.2 + 0.1 * unit(random)};
+  scene.rotation = 0.002 * Eigen::Vector3d(both(random), both(random), both(random));
   scene.step = 0.05 * sideways;
-  if (way == Way::kForward) scene.step = Eigen::Vector3d(0.0, 0.0, 0.15);
-  if (way == Way::kOblique) scene.step.z() = 0.1 * forward;
+  if (motion == Motion::kForward) scene.step = Eigen::Vector3d(0.0, 0.0, 0.15);
+  if (motion == Motion::kOblique) scene.step.z() = 0.1 * forward;
   return scene;
 }
 
-TEST(BootstrapGeometry, MotionIsRightAndOutliersAreLeftOut) {
-  for (const Way way : {Way::kForward, Way::kSideways, Way::kOblique}) {
+TEST(Bootstrapper, EstimatesTheMotionAndRejectsOutliers) {
+  for (const Motion motion : {Motion::kForward, Motion::kSideways, Motion::kOblique}) {
     double outliers = 0.0, kept_outliers = 0.0;
     for (std::uint32_t seed = 1; seed <= 8; ++seed) {
-      const Recording recording = Record(RandomScene(way, seed), seed);
+      const Recording recording = Record(RandomScene(motion, seed), seed);
       const auto bootstrap = FirstMap(recording);
       ASSERT_TRUE(bootstrap) << seed;
       const Frame& first = recording.frames[bootstrap->first];
@@ -108,12 +111,12 @@ TEST(BootstrapGeometry, MotionIsRightAndOutliersAreLeftOut) {
       outliers += all_bad;
       kept_outliers += bad;
     }
-    // Some happen to follow their epipolar lines.
-    EXPECT_LT(kept_outliers, 0.3 * outliers) << static_cast<int>(way);
+    // Some outliers move along their epipolar lines.
+    EXPECT_LT(kept_outliers, 0.3 * outliers) << static_cast<int>(motion);
   }
 }
 
-TEST(BootstrapGeometry, BeginsWhereMostTracksAreSeen) {
+TEST(Bootstrapper, StartsWhereMostTracksAreObserved) {
   Recording recording = Record({.step = {0.05, 0.0, 0.0}}, 1);
   for (int i = 0; i < 5; ++i) {
     std::erase_if(recording.frames[i].features, [](const Feature& feature) { return feature.track >= 25; });
@@ -126,29 +129,55 @@ TEST(BootstrapGeometry, BeginsWhereMostTracksAreSeen) {
   EXPECT_GE(begin(0.5), 5);
 }
 
-TEST(BootstrapGeometry, ACameraThatStandsIsRefused) {
+TEST(Bootstrapper, RejectsAStandingCamera) {
   for (std::uint32_t seed = 1; seed <= 10; ++seed) {
-    std::string obstacle;
-    EXPECT_FALSE(FirstMap(Record({.outlier_share = 0.3}, seed), &obstacle)) << seed;
-    EXPECT_NE(obstacle.find("too little motion"), std::string::npos) << obstacle;
+    std::string failure_reason;
+    EXPECT_FALSE(FirstMap(Record({.outlier_ratio = 0.3}, seed), &failure_reason)) << seed;
+    EXPECT_NE(failure_reason.find("too little motion"), std::string::npos) << failure_reason;
   }
 }
 
-TEST(BootstrapGeometry, ACameraThatOnlyTurnsIsRefused) {
+TEST(Bootstrapper, RejectsAPureRotation) {
   for (std::uint32_t seed = 1; seed <= 15; ++seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> both(-0.01, 0.01);
-    const Scene scene{.turn = {both(random), both(random), both(random)}};
+    const Scene scene{.rotation = {both(random), both(random), both(random)}};
     EXPECT_FALSE(FirstMap(Record(scene, seed))) << seed;
   }
 }
 
-TEST(BootstrapGeometry, TracksThatAllMoveByThemselvesAreRefused) {
+TEST(Bootstrapper, RejectsTracksWithoutARigidMotion) {
   for (std::uint32_t seed = 1; seed <= 3; ++seed) {
-    std::string obstacle;
-    EXPECT_FALSE(FirstMap(Record({.points = 60, .outlier_share = 1.0}, seed), &obstacle)) << seed;
-    EXPECT_NE(obstacle.find("no rigid motion"), std::string::npos) << obstacle;
+    std::string failure_reason;
+    EXPECT_FALSE(FirstMap(Record({.points = 60, .outlier_ratio = 1.0}, seed), &failure_reason)) << seed;
+    EXPECT_NE(failure_reason.find("no rigid motion"), std::string::npos) << failure_reason;
   }
+}
+
+TEST(Bootstrapper, FindsForwardMotion) {
+  for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+    const auto drive = testing::MakeDrive({.seconds = 2.0, .stop = false, .bumps = false, .seed = seed});
+    const auto frames = BuildFrames(drive.tracks, testing::DriveCamera());
+    const Bootstrap bootstrap = testing::FirstMapOfDrive(frames);
+    const geometry::SE3 truth =
+        drive.truth[bootstrap.last].T_world_cam.Inverse() * drive.truth[bootstrap.first].T_world_cam;
+    const geometry::SE3& found = bootstrap.T_cam_world.back();
+    EXPECT_LT(geometry::so3::Log(found.rotation() * truth.rotation().conjugate()).norm(), 0.01) << seed;
+    const double cosine = found.translation().normalized().dot(truth.translation().normalized());
+    EXPECT_GT(cosine, std::cos(0.1)) << seed;
+    EXPECT_GE(bootstrap.points.size(), 25u) << seed;
+  }
+}
+
+TEST(Bootstrapper, BuildsAMapWithoutRefinement) {
+  const auto drive = testing::MakeDrive({.seconds = 2.0, .stop = false, .bumps = false});
+  const auto frames = BuildFrames(drive.tracks, testing::DriveCamera());
+  const Bootstrap refined = testing::FirstMapOfDrive(frames);
+  const Bootstrap plain = testing::FirstMapOfDrive(frames, {.refine = false});
+  EXPECT_EQ(plain.T_cam_world.size(), static_cast<std::size_t>(plain.last - plain.first + 1));
+  EXPECT_GE(plain.points.size(), 25u);
+  EXPECT_GT(plain.T_cam_world.back().translation().norm(), 0.0);
+  EXPECT_NE(plain.T_cam_world.back().translation(), refined.T_cam_world.back().translation());
 }
 
 }  // namespace

@@ -1,25 +1,23 @@
-#include "evo/odometry/bundle_adjuster.hpp"
+#include "odometry/bundle/bundle_adjuster.hpp"
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <random>
 #include <utility>
 
-#include "evo/odometry/pose_uncertainty.hpp"
-#include "odometry/bundle/block_skyline.hpp"
 #include "odometry/bundle/track_weights.hpp"
 #include "odometry/bundle_drive.hpp"
+#include "odometry/uncertainty/pose_uncertainty.hpp"
 
 namespace evo::odometry {
 namespace {
 
+using testing::AddTrackDrift;
 using testing::DriveBundle;
-using testing::LetTracksDrift;
 
-void Disturb(BundleProblem* problem, double by) {
+void Perturb(BundleProblem* problem, double by) {
   std::mt19937 random(9);
   std::normal_distribution<double> normal(0.0, by);
   for (std::size_t i = problem->fixed_frames; i < problem->T_cam_world.size(); ++i) {
@@ -30,63 +28,12 @@ void Disturb(BundleProblem* problem, double by) {
   for (auto& point : problem->points) point.inverse_depth.z() *= std::exp(5 * normal(random));
 }
 
-TEST(BlockSkyline, SolvesLikeADenseFactorisation) {
-  std::mt19937 random(1);
-  std::normal_distribution<double> normal;
-  const std::vector<int> first = {0, 0, 1, 0, 3, 3};
-  BlockSkyline sparse(first);
-  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(36, 36);
-  for (int i = 0; i < 6; ++i) {
-    for (int j = first[i]; j <= i; ++j) {
-      BlockSkyline::Block block = BlockSkyline::Block::NullaryExpr([&] { return normal(random); });
-      if (i == j) block = BlockSkyline::Block(block * block.transpose() + 60.0 * BlockSkyline::Block::Identity());
-      sparse.At(i, j) = block;
-      dense.block<6, 6>(6 * i, 6 * j) = block;
-      dense.block<6, 6>(6 * j, 6 * i) = block.transpose();
-    }
-  }
-  const Eigen::VectorXd b = Eigen::VectorXd::NullaryExpr(36, [&] { return normal(random); });
-  ASSERT_TRUE(sparse.Factorize());
-  EXPECT_LT((sparse.Solve(b) - dense.ldlt().solve(b)).norm(), 1e-10);
-}
-
-TEST(BlockSkyline, RefusesAnIndefiniteMatrix) {
-  BlockSkyline matrix({0});
-  matrix.At(0, 0) = -BlockSkyline::Block::Identity();
-  EXPECT_FALSE(matrix.Factorize());
-}
-
-TEST(BundleAdjuster, JacobiansMatchFiniteDifferences) {
-  const auto problem = DriveBundle(8, 6, 15.0, 1);
-  const double h = 1e-6;
-  for (const auto& observation : problem.observations) {
-    const BundlePoint& point = problem.points[observation.point];
-    const geometry::SE3 pose = problem.T_cam_world[observation.frame] * problem.T_cam_world[point.anchor].Inverse();
-    const Eigen::Vector3d& at_point = point.inverse_depth;
-    BundleJacobian at, plus, minus;
-    ASSERT_TRUE(Linearize(pose, at_point, observation, &at));
-    for (int k = 0; k < 6; ++k) {
-      const geometry::Vector6d d = h * geometry::Vector6d::Unit(k);
-      ASSERT_TRUE(Linearize(geometry::SE3::Exp(d) * pose, at_point, observation, &plus));
-      ASSERT_TRUE(Linearize(geometry::SE3::Exp(-d) * pose, at_point, observation, &minus));
-      EXPECT_LT((at.by_pose.col(k) - (plus.error - minus.error) / (2 * h)).norm(), 1e-4);
-    }
-    for (int k = 0; k < 3; ++k) {
-      const Eigen::Vector3d more = at_point + h * Eigen::Vector3d::Unit(k);
-      const Eigen::Vector3d less = at_point - h * Eigen::Vector3d::Unit(k);
-      ASSERT_TRUE(Linearize(pose, more, observation, &plus));
-      ASSERT_TRUE(Linearize(pose, less, observation, &minus));
-      EXPECT_LT((at.by_point.col(k) - (plus.error - minus.error) / (2 * h)).norm(), 1e-3);
-    }
-  }
-}
-
 TEST(BundleAdjuster, RecoversTheTruthWithoutNoise) {
   const auto truth = DriveBundle(12, 120, 0.0, 2);
   auto problem = truth;
   problem.fixed_frames = 2;  // the scale is held
-  Disturb(&problem, 0.05);
-  const auto summary = AdjustBundle({.iterations = 50, .relative_decrease = 1e-12}, &problem);
+  Perturb(&problem, 0.05);
+  const auto summary = AdjustBundle({.max_iterations = 50, .min_relative_decrease = 1e-12}, &problem);
   EXPECT_LT(summary.final_cost, 1e-8);
   EXPECT_LT(summary.final_cost, 1e-6 * summary.initial_cost);
   for (std::size_t i = 0; i < truth.T_cam_world.size(); ++i) {
@@ -94,15 +41,15 @@ TEST(BundleAdjuster, RecoversTheTruthWithoutNoise) {
   }
 }
 
-TEST(BundleAdjuster, FreeScaleStillConverges) {
+TEST(BundleAdjuster, ConvergesWithFreeScale) {
   auto problem = DriveBundle(12, 120, 0.0, 3);
-  Disturb(&problem, 0.05);
-  const auto summary = AdjustBundle({.iterations = 50, .relative_decrease = 1e-12}, &problem);
+  Perturb(&problem, 0.05);
+  const auto summary = AdjustBundle({.max_iterations = 50, .min_relative_decrease = 1e-12}, &problem);
   EXPECT_LT(summary.final_cost, 1e-8);
 }
 
-/// Root mean square error of the poses' directions of view, rad.
-double TurnError(const BundleProblem& problem, const BundleProblem& truth) {
+/// Root mean square error of the poses' rotations, rad.
+double RotationError(const BundleProblem& problem, const BundleProblem& truth) {
   double sum = 0.0;
   for (std::size_t i = 0; i < truth.T_cam_world.size(); ++i) {
     sum += (problem.T_cam_world[i] * truth.T_cam_world[i].Inverse()).Log().tail<3>().squaredNorm();
@@ -110,34 +57,34 @@ double TurnError(const BundleProblem& problem, const BundleProblem& truth) {
   return std::sqrt(sum / static_cast<double>(truth.T_cam_world.size()));
 }
 
-/// The same after an adjustment that expects that drift.
-double TurnError(double drift, std::uint32_t seed) {
+/// The same after an adjustment with this drift model.
+double RotationError(double drift, std::uint32_t seed) {
   const auto truth = DriveBundle(40, 500, 0.0, seed);
   auto problem = DriveBundle(40, 500, 0.1, seed);
   problem.fixed_frames = 2;
-  LetTracksDrift(0.3, seed, &problem);
-  AdjustBundle({.iterations = 30, .loss_px = 100.0, .drift = drift}, &problem);
-  return TurnError(problem, truth);
+  AddTrackDrift(0.3, seed, &problem);
+  AdjustBundle({.max_iterations = 30, .cauchy_width_px = 100.0, .drift_variance_ratio = drift}, &problem);
+  return RotationError(problem, truth);
 }
 
-TEST(BundleAdjuster, ExpectingDriftHelpsWhereTracksDrift) {
+TEST(BundleAdjuster, DriftModelReducesTheErrorWhereTracksDrift) {
   double with = 0.0, without = 0.0;
   for (std::uint32_t seed = 1; seed <= 12; ++seed) {
-    with += TurnError(9.0, seed);
-    without += TurnError(0.0, seed);
+    with += RotationError(9.0, seed);
+    without += RotationError(0.0, seed);
   }
   EXPECT_LT(with, 0.9 * without);
 }
 
-TEST(BundleAdjuster, ExpectingDriftEndsInAMinimum) {
+TEST(BundleAdjuster, DriftModelConvergesToAMinimum) {
   auto problem = DriveBundle(10, 60, 0.5, 6);
   problem.fixed_frames = 2;
-  const BundleOptions options{.iterations = 100, .drift = 0.4, .relative_decrease = 1e-14};
+  const BundleOptions options{.max_iterations = 100, .drift_variance_ratio = 0.4, .min_relative_decrease = 1e-14};
   // The magnifications are those of the start, so from there once more.
   for (int i = 0; i < 5; ++i) AdjustBundle(options, &problem);
   const auto cost = [&](const BundleProblem& at) {
     auto copy = at;
-    return AdjustBundle({.iterations = 0, .drift = 0.4}, &copy).initial_cost;
+    return AdjustBundle({.max_iterations = 0, .drift_variance_ratio = 0.4}, &copy).initial_cost;
   };
   const double least = cost(problem);
   for (std::size_t i = 2; i < problem.T_cam_world.size(); ++i) {
@@ -151,7 +98,7 @@ TEST(BundleAdjuster, ExpectingDriftEndsInAMinimum) {
   }
 }
 
-/// The points in the order in which they come into view, as in a run: only so can threads share the work.
+/// The points in order of their first frames, as in a run: only so can threads share the work.
 BundleProblem InOrderOfFrames(BundleProblem problem) {
   std::ranges::stable_sort(problem.observations, {}, [&](const BundleObservation& observation) {
     return std::pair(problem.points[observation.point].anchor, observation.point);
@@ -167,19 +114,19 @@ BundleProblem InOrderOfFrames(BundleProblem problem) {
   return problem;
 }
 
-TEST(BundleAdjuster, ThreadsChangeNothing) {
+TEST(BundleAdjuster, ResultDoesNotDependOnThreads) {
   auto start = InOrderOfFrames(DriveBundle(150, 1500, 0.3, 7));
   start.fixed_frames = 2;
-  Disturb(&start, 0.002);
-  const BundleOptions options{.iterations = 4, .drift = 0.1};
+  Perturb(&start, 0.002);
+  const BundleOptions options{.max_iterations = 4, .drift_variance_ratio = 0.1};
   auto alone = start;
   AdjustBundle(options, &alone);
-  const auto alone_covariances = PoseUncertainty({}, options, alone).Covariances(0, true);
+  const auto alone_covariances = EstimatePoseUncertainty({}, options, alone)->errors.Covariances(0, true);
   for (const int threads : {1, 2, 4}) {
     ThreadPool pool(threads);
     auto together = start;
     AdjustBundle(options, &together, &pool);
-    const auto covariances = PoseUncertainty({}, options, together, &pool).Covariances(0, true);
+    const auto covariances = EstimatePoseUncertainty({}, options, together, &pool)->errors.Covariances(0, true);
     for (std::size_t i = 0; i < alone.T_cam_world.size(); ++i) {
       EXPECT_EQ(alone.T_cam_world[i].Matrix(), together.T_cam_world[i].Matrix()) << threads << " " << i;
       EXPECT_EQ(alone_covariances[i], covariances[i]) << threads << " " << i;
@@ -191,9 +138,9 @@ TEST(BundleAdjuster, ThreadsChangeNothing) {
 }
 
 /// A pose seen by a few tracks, one of which has slipped.
-TEST(BundleAdjuster, ExpectingTheUsualMotionHoldsAPoseOfFewTracks) {
+TEST(BundleAdjuster, MotionPriorHoldsAPoseWithFewTracks) {
   constexpr int kFrame = 6;
-  double with = 0.0, without = 0.0;  // largest errors
+  double with = 0.0, without = 0.0;  // maximum errors
   for (std::uint32_t seed = 1; seed <= 10; ++seed) {
     auto truth = DriveBundle(12, 120, 0.2, seed);
     truth.fixed_frames = 2;
@@ -203,12 +150,12 @@ TEST(BundleAdjuster, ExpectingTheUsualMotionHoldsAPoseOfFewTracks) {
     const auto error_of = [&](const MotionPrior& motion) {
       auto problem = truth;
       problem.motion = motion;
-      Disturb(&problem, 0.01);
-      AdjustBundle({.iterations = 50, .loss_px = 0.5}, &problem);
+      Perturb(&problem, 0.01);
+      AdjustBundle({.max_iterations = 50, .cauchy_width_px = 0.5}, &problem);
       return (problem.T_cam_world[kFrame] * truth.T_cam_world[kFrame].Inverse()).Log().norm();
     };
     MotionPrior motion{{}, 0.2, 2.0};
-    for (int i = 0; i < 12; ++i) motion.t.push_back(0.02 * i);
+    for (int i = 0; i < 12; ++i) motion.times_s.push_back(0.02 * i);
     with = std::max(with, error_of(motion));
     without = std::max(without, error_of({}));
   }
@@ -216,7 +163,7 @@ TEST(BundleAdjuster, ExpectingTheUsualMotionHoldsAPoseOfFewTracks) {
   EXPECT_GT(without, 0.1);
 }
 
-/// A drive in which every other track is eight times as noisy as the others.
+/// A drive with every other track eight times as noisy as the others.
 BundleProblem DriveWithNoisyTracks(std::uint32_t seed) {
   auto problem = DriveBundle(40, 500, 0.1, seed);
   problem.fixed_frames = 2;
@@ -228,49 +175,49 @@ BundleProblem DriveWithNoisyTracks(std::uint32_t seed) {
   return problem;
 }
 
-TEST(BundleAdjuster, TracksWeighAsTheirNoiseLetsThem) {
+TEST(BundleAdjuster, TrackWeightsFollowTheTracksNoise) {
   auto problem = DriveWithNoisyTracks(1);
-  WeighTracks(0.0, &problem);
+  SetTrackWeights(0.0, &problem);
   std::array<std::vector<double>, 2> weights;
   for (std::size_t p = 0; p < problem.points.size(); ++p) weights[p % 2].push_back(problem.points[p].weight);
-  for (auto& of_kind : weights) std::ranges::sort(of_kind);
+  for (auto& group : weights) std::ranges::sort(group);
   const double ratio = weights[1][weights[1].size() / 2] / weights[0][weights[0].size() / 2];
-  EXPECT_GT(ratio, 2.0);  // the usual noise draws both towards each other
+  EXPECT_GT(ratio, 2.0);  // the prior draws both towards the typical noise
   EXPECT_LT(ratio, 8.1);
   EXPECT_GT(weights[1].front(), weights[0].back());
   const auto weighted = problem;
-  WeighTracks(0.0, &problem);
+  SetTrackWeights(0.0, &problem);
   for (std::size_t p = 0; p < problem.points.size(); ++p) {
     EXPECT_EQ(problem.points[p].weight, weighted.points[p].weight);
   }
 }
 
-TEST(BundleAdjuster, WeighingTracksHelpsWhereTheirNoiseDiffers) {
-  const auto turn_error = [](bool weigh, std::uint32_t seed) {
+TEST(BundleAdjuster, TrackWeightsReduceTheErrorWhereNoiseDiffers) {
+  const auto rotation_error = [](bool use_weights, std::uint32_t seed) {
     const auto truth = DriveBundle(40, 500, 0.0, seed);
     auto problem = DriveWithNoisyTracks(seed);
-    const BundleOptions options{.iterations = 30, .loss_px = 100.0};
+    const BundleOptions options{.max_iterations = 30, .cauchy_width_px = 100.0};
     AdjustBundle(options, &problem);
-    if (weigh) {
-      WeighTracks(0.0, &problem);
+    if (use_weights) {
+      SetTrackWeights(0.0, &problem);
       AdjustBundle(options, &problem);
     }
-    return std::pow(TurnError(problem, truth), 2);
+    return std::pow(RotationError(problem, truth), 2);
   };
   double with = 0.0, without = 0.0;
   for (std::uint32_t seed = 1; seed <= 8; ++seed) {
-    with += turn_error(true, seed);
-    without += turn_error(false, seed);
+    with += rotation_error(true, seed);
+    without += rotation_error(false, seed);
   }
   EXPECT_LT(std::sqrt(with), 0.5 * std::sqrt(without));
 }
 
-TEST(BundleAdjuster, OutliersHardlyMatter) {
+TEST(BundleAdjuster, IsRobustToOutliers) {
   const auto truth = DriveBundle(12, 200, 0.0, 4);
   auto problem = DriveBundle(12, 200, 0.3, 4);
   problem.fixed_frames = 2;
   for (std::size_t i = 0; i < problem.observations.size(); i += 12) problem.observations[i].x.x() += 0.1;
-  AdjustBundle({.iterations = 50}, &problem);
+  AdjustBundle({.max_iterations = 50}, &problem);
   const geometry::Vector6d error = (problem.T_cam_world.back() * truth.T_cam_world.back().Inverse()).Log();
   EXPECT_LT(error.head<3>().norm(), 0.1);
   EXPECT_LT(error.tail<3>().norm(), 0.005);

@@ -9,20 +9,20 @@
 #include <random>
 #include <vector>
 
-#include "evo/odometry/bundle_adjuster.hpp"
+#include "odometry/bundle/bundle_adjuster.hpp"
 #include "odometry/track_covariance.hpp"
 
 namespace evo::odometry {
 namespace {
 
 constexpr int kFrames = 6;
-constexpr double kLossPx = 1.0;
-constexpr double kScalePrior = 1e3;  // any: it holds what the sightings leave free
+constexpr double kCauchyWidthPx = 1.0;
+constexpr double kScaleWeightPx = 1e3;  // any: it fixes what the observations leave free
 
-/// Sightings with noise and some outliers by a camera that drives forward, and a start that is off the truth.
-BundleProblem DisturbedDrive(std::uint32_t seed) {
+/// Observations with noise and some outliers by a camera that drives forward; poses and points are perturbed.
+BundleProblem PerturbedDrive(std::uint32_t seed) {
   std::mt19937 random(seed);
-  std::uniform_real_distribution<double> side(-0.6, 0.6), depth(4.0, 20.0), share(0.0, 1.0), far(-15.0, 15.0);
+  std::uniform_real_distribution<double> side(-0.6, 0.6), depth(4.0, 20.0), uniform(0.0, 1.0), far(-15.0, 15.0);
   std::normal_distribution<double> normal;
   BundleProblem problem;
   for (int i = 0; i < kFrames; ++i) {
@@ -34,10 +34,11 @@ BundleProblem DisturbedDrive(std::uint32_t seed) {
     for (int i = p % 3; i < kFrames; ++i) {
       const Eigen::Vector3d q = problem.T_cam_world[i] * WorldPosition(problem, problem.points.back());
       Eigen::Vector2d error_px(0.4 * normal(random), 0.4 * normal(random));
-      if (share(random) < 0.08) error_px += Eigen::Vector2d(far(random), far(random));
-      Eigen::Matrix2d px_per_unit;
-      px_per_unit << 230.0 + 10.0 * normal(random), 5.0 * normal(random), 5.0 * normal(random), 210.0;
-      problem.observations.push_back({i, p, q.head<2>() / q.z() + px_per_unit.inverse() * error_px, px_per_unit});
+      if (uniform(random) < 0.08) error_px += Eigen::Vector2d(far(random), far(random));
+      Eigen::Matrix2d J_pixel_normalized;
+      J_pixel_normalized << 230.0 + 10.0 * normal(random), 5.0 * normal(random), 5.0 * normal(random), 210.0;
+      problem.observations.push_back(
+          {i, p, q.head<2>() / q.z() + J_pixel_normalized.inverse() * error_px, J_pixel_normalized});
     }
   }
   for (int i = 2; i < kFrames; ++i) {
@@ -49,7 +50,7 @@ BundleProblem DisturbedDrive(std::uint32_t seed) {
   return problem;
 }
 
-/// The sum over the errors of one track, weighted; the parameters are its point and then all poses, T_cam_world as axis
+/// The weighted sum of the errors of one track; the parameters are its point and then all poses T_cam_world as axis
 /// times angle and translation.
 struct Innovation {
   const BundleProblem& problem;
@@ -68,12 +69,12 @@ struct Innovation {
       const T back[3] = {-anchor[0], -anchor[1], -anchor[2]};
       const T centred[3] = {point[0] / point[2] - anchor[3], point[1] / point[2] - anchor[4],
                             1.0 / point[2] - anchor[5]};
-      T world[3], turned[3];
+      T world[3], rotated[3];
       ceres::AngleAxisRotatePoint(back, centred, world);
-      ceres::AngleAxisRotatePoint(camera, world, turned);
-      const T z = turned[2] + camera[5];
-      const Eigen::Matrix<T, 2, 1> projection((turned[0] + camera[3]) / z, (turned[1] + camera[4]) / z);
-      sum += weights[k] * (observation.px_per_unit * (observation.x - projection));
+      ceres::AngleAxisRotatePoint(camera, world, rotated);
+      const T z = rotated[2] + camera[5];
+      const Eigen::Matrix<T, 2, 1> projection((rotated[0] + camera[3]) / z, (rotated[1] + camera[4]) / z);
+      sum += weights[k] * (observation.J_pixel_normalized * (observation.x - projection));
     }
     return true;
   }
@@ -84,14 +85,14 @@ struct HeldDistance {
 
   template <typename T>
   bool operator()(const T* pose, T* residual) const {
-    residual[0] = kScalePrior * (Eigen::Map<const Eigen::Matrix<T, 3, 1>>(pose + 3).norm() / length - 1.0);
+    residual[0] = kScaleWeightPx * (Eigen::Map<const Eigen::Matrix<T, 3, 1>>(pose + 3).norm() / length - 1.0);
     return true;
   }
 };
 
-/// What makes innovations of the errors of the track that begins with that observation: the inverse of its covariance's
-/// Cholesky factor, in units of an innovation late in a track.
-Eigen::MatrixXd Whitening(const BundleProblem& problem, double drift, std::size_t first, std::size_t end) {
+/// The matrix that takes the errors of the observations [first, end) of one track to normalised innovations: the
+/// inverse Cholesky factor of their covariance, in units of an innovation late in a track.
+Eigen::MatrixXd WhiteningMatrix(const BundleProblem& problem, double drift, std::size_t first, std::size_t end) {
   std::vector<double> magnifications;
   for (std::size_t i = first; i < end; ++i) {
     const BundlePoint& point = problem.points[problem.observations[i].point];
@@ -99,25 +100,25 @@ Eigen::MatrixXd Whitening(const BundleProblem& problem, double drift, std::size_
     magnifications.push_back(1.0 / (q.z() * point.inverse_depth.z()));
   }
   const Eigen::MatrixXd factor = testing::TrackCovariance(drift, magnifications).llt().matrixL();
-  const double settled = 0.5 * (drift + std::sqrt(drift * drift + 4.0 * drift));
-  return problem.points[problem.observations[first].point].weight * std::sqrt(1.0 + settled) * factor.inverse();
+  const double steady_variance = 0.5 * (drift + std::sqrt(drift * drift + 4.0 * drift));
+  return problem.points[problem.observations[first].point].weight * std::sqrt(1.0 + steady_variance) * factor.inverse();
 }
 
-/// A residual and a loss for every sighting of that track.
+/// Adds a residual with a loss for every observation of one track.
 void AddTrack(const BundleProblem& start, double drift, std::size_t first, std::size_t end,
               const std::vector<double*>& parameters, ceres::Problem* ceres) {
-  const Eigen::MatrixXd whitening = Whitening(start, drift, first, end);
+  const Eigen::MatrixXd whitening = WhiteningMatrix(start, drift, first, end);
   for (Eigen::Index k = 0; k < whitening.rows(); ++k) {
     auto* const cost =
         new ceres::DynamicAutoDiffCostFunction<Innovation>(new Innovation{start, first, whitening.row(k).head(k + 1)});
     cost->AddParameterBlock(3);
     for (int i = 0; i < kFrames; ++i) cost->AddParameterBlock(6);
     cost->SetNumResiduals(2);
-    ceres->AddResidualBlock(cost, new ceres::CauchyLoss(kLossPx), parameters);
+    ceres->AddResidualBlock(cost, new ceres::CauchyLoss(kCauchyWidthPx), parameters);
   }
 }
 
-/// What AdjustBundle does, by Ceres and its derivatives; the cost.
+/// AdjustBundle by Ceres and its automatic derivatives; returns the cost.
 double AdjustByCeres(double drift, BundleProblem* problem) {
   const BundleProblem start = *problem;
   std::vector<geometry::Vector6d> poses(kFrames);
@@ -155,39 +156,42 @@ double AdjustByCeres(double drift, BundleProblem* problem) {
   return summary.final_cost;
 }
 
-double LargestPoseDifference(const BundleProblem& a, const BundleProblem& b) {
-  double largest = 0.0;
+double MaxPoseDifference(const BundleProblem& a, const BundleProblem& b) {
+  double max = 0.0;
   for (int i = 0; i < kFrames; ++i) {
-    largest = std::max(largest, (a.T_cam_world[i] * b.T_cam_world[i].Inverse()).Log().norm());
+    max = std::max(max, (a.T_cam_world[i] * b.T_cam_world[i].Inverse()).Log().norm());
   }
-  return largest;
+  return max;
 }
 
-void ExpectTheSameMinimum(double drift, int fixed_frames, int scale_frame) {
+void ExpectSameMinimum(double drift, int fixed_frames, int scale_frame) {
   for (std::uint32_t seed = 2; seed <= 4; ++seed) {
-    auto start = DisturbedDrive(seed);
+    auto start = PerturbedDrive(seed);
     start.fixed_frames = fixed_frames;
     start.scale_frame = scale_frame;
     auto ours = start;
     auto theirs = start;
-    const BundleSummary summary =
-        AdjustBundle({.iterations = 300, .loss_px = kLossPx, .drift = drift, .relative_decrease = 1e-15}, &ours);
+    const BundleSummary summary = AdjustBundle({.max_iterations = 300,
+                                                .cauchy_width_px = kCauchyWidthPx,
+                                                .drift_variance_ratio = drift,
+                                                .min_relative_decrease = 1e-15},
+                                               &ours);
     const double cost = AdjustByCeres(drift, &theirs);
     EXPECT_LT(summary.final_cost, 0.6 * summary.initial_cost) << seed;
-    EXPECT_GT(LargestPoseDifference(ours, start), 0.02) << seed;
+    EXPECT_GT(MaxPoseDifference(ours, start), 0.02) << seed;
     EXPECT_NEAR(summary.final_cost, cost, 1e-10 * cost) << seed;
-    EXPECT_LT(LargestPoseDifference(ours, theirs), 1e-6) << seed;
+    EXPECT_LT(MaxPoseDifference(ours, theirs), 1e-6) << seed;
     for (std::size_t p = 0; p < ours.points.size(); ++p) {
       EXPECT_LT((ours.points[p].inverse_depth - theirs.points[p].inverse_depth).norm(), 1e-6) << seed << " " << p;
     }
   }
 }
 
-TEST(BundleByCeres, HasTheSameMinimum) { ExpectTheSameMinimum(0.0, 2, -1); }
+TEST(BundleByCeres, HasSameMinimum) { ExpectSameMinimum(0.0, 2, -1); }
 
-TEST(BundleByCeres, HasTheSameMinimumWhereAFrameHoldsTheScale) { ExpectTheSameMinimum(0.0, 1, kFrames - 1); }
+TEST(BundleByCeres, HasSameMinimumWithAScaleFrame) { ExpectSameMinimum(0.0, 1, kFrames - 1); }
 
-TEST(BundleByCeres, HasTheSameMinimumWhereTracksDrift) { ExpectTheSameMinimum(0.5, 2, -1); }
+TEST(BundleByCeres, HasSameMinimumWithDrift) { ExpectSameMinimum(0.5, 2, -1); }
 
 }  // namespace
 }  // namespace evo::odometry

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "evo/core/error.hpp"
+#include "evo/core/parameters.hpp"
 #include "odometry/synthetic_drive.hpp"
 
 namespace evo::odometry {
@@ -26,8 +27,8 @@ constexpr auto kNoProgress = [](OdometryStage, double) {};
 
 struct Accuracy {
   double planar_percent = 0.0;    ///< mean planar error over the path: first pose aligned, one scale
-  double rotation_degrees = 0.0;  ///< largest error of the rotation since the first pose
-  double coverage = 0.0;          ///< share of the frames with a pose
+  double rotation_degrees = 0.0;  ///< maximum error of the rotation since the first pose
+  double coverage = 0.0;          ///< ratio of frames with a pose
 };
 
 Accuracy Evaluate(const geometry::Trajectory& estimate, const geometry::Trajectory& truth) {
@@ -59,7 +60,7 @@ OdometryResult Estimate(const Drive& drive, const OdometryOptions& options = {},
   return RunOdometry(drive.tracks, DriveCamera(), options, threads, kNoProgress);
 }
 
-TEST(Odometry, DrivesThroughBumpsStopAndTrafficWithinAPercent) {
+TEST(Odometry, TracksADriveWithBumpsStopAndTrafficWithinAPercent) {
   double sum = 0.0;
   for (std::uint32_t seed = 1; seed <= 3; ++seed) {
     const Drive drive = MakeDrive({.seed = seed});
@@ -77,7 +78,7 @@ TEST(Odometry, DrivesThroughBumpsStopAndTrafficWithinAPercent) {
   EXPECT_LT(sum / 3, 0.35);
 }
 
-TEST(Odometry, RefinementPaysOff) {
+TEST(Odometry, RefinementLowersTheError) {
   OdometryOptions online;
   online.final_refinement.enabled = false;
   double before = 0.0, after = 0.0;
@@ -91,7 +92,7 @@ TEST(Odometry, RefinementPaysOff) {
   EXPECT_LT(after, 0.8 * before);
 }
 
-TEST(Odometry, KeyFramesByRuleOrEverySoManyFrames) {
+TEST(Odometry, KeyFramesByRuleOrAtAFixedInterval) {
   const Drive drive = MakeDrive({.seconds = 4.0, .stop = false, .bumps = false});
   OdometryOptions options;
   options.frame_handler.key_frame.every_frames = 4;
@@ -100,7 +101,7 @@ TEST(Odometry, KeyFramesByRuleOrEverySoManyFrames) {
   EXPECT_NE(Estimate(drive).key_frames, regular.key_frames);
 }
 
-TEST(Odometry, SameBytesForAnyNumberOfThreads) {
+TEST(Odometry, ResultDoesNotDependOnThreads) {
   const Drive drive = MakeDrive({.seconds = 5.0, .seed = 5});
   const auto one = Estimate(drive, {}, 1);
   const auto four = Estimate(drive, {}, 4);
@@ -113,19 +114,19 @@ TEST(Odometry, SameBytesForAnyNumberOfThreads) {
   for (std::size_t i = 0; i < one.points.size(); ++i) EXPECT_EQ(one.points[i].position, four.points[i].position);
 }
 
-TEST(Odometry, GapWithoutTracksStartsANewSegmentAtTheOldSpeed) {
+TEST(Odometry, ANewSegmentAfterAGapContinuesTheVelocity) {
   const Drive drive = MakeDrive({.stop = false, .blackout = FromSeconds(0.5), .seed = 6});
   const auto result = Estimate(drive);
   EXPECT_EQ(result.bootstraps.size(), 2u);
   const Accuracy accuracy = Evaluate(result.trajectory, drive.truth);
-  EXPECT_LT(accuracy.planar_percent, 3.0);  // the scale is carried over by the speed alone
+  EXPECT_LT(accuracy.planar_percent, 3.0);  // only the speed carries the scale over
   EXPECT_GT(accuracy.coverage, 0.93);
   for (std::size_t i = 1; i < result.trajectory.size(); ++i) {
     EXPECT_GT(result.trajectory[i].t, result.trajectory[i - 1].t);
   }
 }
 
-TEST(Odometry, StandstillIsNotMotion) {
+TEST(Odometry, RejectsAStandingCamera) {
   const Drive drive = MakeDrive({.seconds = 3.0, .speed = 0.0, .bumps = false});
   try {
     Estimate(drive);
@@ -136,9 +137,9 @@ TEST(Odometry, StandstillIsNotMotion) {
   }
 }
 
-TEST(Odometry, AtAStopAFewPointsThatRestAreEnough) {
+TEST(Odometry, FewStaticPointsSufficeAtAStop) {
   Drive drive = MakeDrive({.seed = 7});
-  // While it stands, most of what it sees sits on cars that drive off.
+  // During the stop most tracks lie on cars that drive off.
   const TimeNs begin = drive.truth.front().t + FromSeconds(5.8), end = begin + FromSeconds(0.5);
   for (auto& o : drive.tracks) {
     if (o.t < begin || o.id % 50 >= 31) continue;
@@ -157,7 +158,7 @@ TEST(Odometry, AtAStopAFewPointsThatRestAreEnough) {
   EXPECT_LT(accuracy.rotation_degrees, 1.2);
 }
 
-TEST(Odometry, SaysThatThereAreTooFewTracks) {
+TEST(Odometry, ReportsTooFewTracks) {
   const Drive drive = MakeDrive({.seconds = 3.0, .features = 10, .stop = false});
   try {
     Estimate(drive);
@@ -168,7 +169,7 @@ TEST(Odometry, SaysThatThereAreTooFewTracks) {
   }
 }
 
-TEST(Odometry, ACalibrationOfAnotherSensorIsRefused) {
+TEST(Odometry, RejectsACalibrationOfAnotherSensor) {
   geometry::Calibration small = DriveCamera().calibration();
   small.width = 240;
   small.height = 180;
@@ -181,7 +182,27 @@ TEST(Odometry, ACalibrationOfAnotherSensorIsRefused) {
   }
 }
 
-TEST(Odometry, OptionsHaveUniqueNamesAndDefaultsInRange) {
+TEST(OdometryOptions, FormerNamesAreAccepted) {
+  OdometryOptions options;
+  Parameters parameters;
+  Register(parameters, options);
+  parameters.Set("odometry.final.drift=0.5");
+  parameters.Set("odometry.final.motion=3");
+  parameters.Set("odometry.final.own_noise=false");
+  parameters.Set("odometry.final.budget=5e3");
+  parameters.Set("odometry.covariance.alike=7");
+  parameters.Set("odometry.covariance.turn=0.25");
+  parameters.Set("odometry.ground.drift=0.125");
+  EXPECT_EQ(options.final_refinement.drift_variance_ratio, 0.5);
+  EXPECT_EQ(options.final_refinement.velocity_change_scale, 3.0);
+  EXPECT_FALSE(options.final_refinement.track_noise);
+  EXPECT_EQ(options.final_refinement.max_block_products, 5e3);
+  EXPECT_EQ(options.final_refinement.covariance.variance_inflation, 7.0);
+  EXPECT_EQ(options.final_refinement.covariance.rotation_bias_ratio, 0.25);
+  EXPECT_EQ(options.ground.scale_drift_ratio, 0.125);
+}
+
+TEST(OdometryOptions, HaveUniqueNamesAndDefaultsInRange) {
   OdometryOptions options;
   Parameters parameters;
   Register(parameters, options);
@@ -193,8 +214,8 @@ TEST(Odometry, OptionsHaveUniqueNamesAndDefaultsInRange) {
   }
 }
 
-/// Real tracks, asynchronous, with motion capture.
-TEST(Odometry, FollowsRealAsynchronousTracks) {
+/// Real asynchronous tracks with motion capture as truth.
+TEST(Odometry, TracksRealAsynchronousTracks) {
   const std::string folder = std::string(EVO_SOURCE_DIR) + "/../shared/data/uzh_boxes_6dof_tracks/";
   std::ifstream calibration_file(folder + "calib.txt"), tracks_file(folder + "tracks.txt");
   std::ifstream truth_file(folder + "groundtruth.txt");

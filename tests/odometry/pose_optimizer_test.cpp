@@ -1,4 +1,4 @@
-#include "evo/odometry/pose_optimizer.hpp"
+#include "odometry/frontend/pose_optimizer.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,10 +18,11 @@ std::vector<PoseObservation> Scene(int count, double noise_px, std::uint32_t see
   for (int i = 0; i < count; ++i) {
     const double z = depth(random);
     const Eigen::Vector3d p(side(random) * z, side(random) * z, z);
-    Eigen::Matrix2d px_per_unit;
-    px_per_unit << 220.0, 5.0, 5.0, 210.0;
+    Eigen::Matrix2d J_pixel_normalized;
+    J_pixel_normalized << 220.0, 5.0, 5.0, 210.0;
     const Eigen::Vector2d noise(normal(random), normal(random));
-    observations.push_back({Truth().Inverse() * p, p.head<2>() / p.z() + px_per_unit.inverse() * noise, px_per_unit});
+    observations.push_back(
+        {Truth().Inverse() * p, p.head<2>() / p.z() + J_pixel_normalized.inverse() * noise, J_pixel_normalized});
   }
   return observations;
 }
@@ -51,7 +52,7 @@ TEST(PoseOptimizer, IsExactWithoutNoiseFromAPoorStart) {
   EXPECT_TRUE(optimizer.Accepts(estimate));
 }
 
-TEST(PoseOptimizer, WithstandsThirtyPercentOutliers) {
+TEST(PoseOptimizer, IsRobustAgainstThirtyPercentOutliers) {
   for (std::uint32_t seed = 1; seed <= 5; ++seed) {
     auto observations = Scene(80, 0.4, seed);
     std::mt19937 random(seed);
@@ -67,20 +68,20 @@ TEST(PoseOptimizer, WithstandsThirtyPercentOutliers) {
   }
 }
 
-TEST(PoseOptimizer, CovarianceForetellsTheSpread) {
-  geometry::Matrix6d spread = geometry::Matrix6d::Zero(), foretold = spread;
+TEST(PoseOptimizer, CovariancePredictsTheErrors) {
+  geometry::Matrix6d spread = geometry::Matrix6d::Zero(), predicted = spread;
   const int trials = 200;
   for (int trial = 0; trial < trials; ++trial) {
     const auto estimate = PoseOptimizer({}).Optimize(Scene(60, 0.4, 100 + trial), Truth());
     const geometry::Vector6d error = (estimate.T_cam_world * Truth().Inverse()).Log();
     spread += error * error.transpose() / trials;
-    foretold += estimate.covariance / trials;
+    predicted += estimate.covariance / trials;
   }
-  EXPECT_NEAR(std::sqrt(spread(2, 2) / foretold(2, 2)), 1.0, 0.25);
-  EXPECT_NEAR(std::sqrt(spread(4, 4) / foretold(4, 4)), 1.0, 0.25);
+  EXPECT_NEAR(std::sqrt(spread(2, 2) / predicted(2, 2)), 1.0, 0.25);
+  EXPECT_NEAR(std::sqrt(spread(4, 4) / predicted(4, 4)), 1.0, 0.25);
 }
 
-TEST(PoseOptimizer, RefusesTooFewPoints) {
+TEST(PoseOptimizer, RejectsTooFewPoints) {
   const PoseOptimizer optimizer({});
   EXPECT_FALSE(optimizer.Accepts(optimizer.Optimize(Scene(2, 0.0, 1), Truth())));
   EXPECT_FALSE(optimizer.Accepts(optimizer.Optimize(Scene(5, 0.0, 1), Truth())));

@@ -6,20 +6,27 @@
 #include <cmath>
 #include <random>
 
-#include "evo/core/error.hpp"
 #include "odometry/synthetic_drive.hpp"
 
 namespace evo::odometry {
 namespace {
 
-/// A track that moves with `speed` px/s along x, seen at random instants about `interval_s` apart, quantised to whole
-/// pixels if asked for.
-void AddTrack(std::int64_t id, double speed, double interval_s, double from_s, double to_s, bool quantised,
-              std::mt19937* random, events::Tracks* tracks) {
+/// A track that moves along x.
+struct LinearTrack {
+  std::int64_t id = 0;
+  double speed = 0.0;  // px/s
+  double interval_s = 0.003;
+  double begin_s = 0.0;
+  double end_s = 1.0;
+  bool quantised = false;  // to whole pixels
+};
+
+/// Observes a track at random instants about its interval apart.
+void AddTrack(const LinearTrack& track, std::mt19937* random, events::Tracks* tracks) {
   std::uniform_real_distribution<double> jitter(0.5, 1.5);
-  for (double t = from_s; t < to_s; t += interval_s * jitter(*random)) {
-    const double x = 20.0 + speed * t;
-    tracks->push_back({id, FromSeconds(t), quantised ? std::round(x) : x, 50.0});
+  for (double t = track.begin_s; t < track.end_s; t += track.interval_s * jitter(*random)) {
+    const double x = 20.0 + track.speed * t;
+    tracks->push_back({track.id, FromSeconds(t), track.quantised ? std::round(x) : x, 50.0});
   }
 }
 
@@ -27,19 +34,20 @@ void Sort(events::Tracks* tracks) {
   std::ranges::sort(*tracks, {}, [](const events::TrackObservation& o) { return std::pair(o.t, o.id); });
 }
 
-TEST(Resampling, TellsFramesFromAsynchronousTracks) {
+TEST(Resampling, DistinguishesFramesFromAsynchronousTracks) {
   EXPECT_TRUE(AreSynchronous(testing::MakeDrive({.seconds = 0.5}).tracks));
   std::mt19937 random(1);
   events::Tracks tracks;
-  for (int id = 0; id < 50; ++id) AddTrack(id, 100, 0.002, 0, 0.5, false, &random, &tracks);
+  for (int id = 0; id < 50; ++id)
+    AddTrack({.id = id, .speed = 100, .interval_s = 0.002, .end_s = 0.5}, &random, &tracks);
   Sort(&tracks);
   EXPECT_FALSE(AreSynchronous(tracks));
 }
 
-TEST(Resampling, IsExactOnStraightMotionAndNeverExtrapolates) {
+TEST(Resampling, IsExactForLinearMotionAndDoesNotExtrapolate) {
   std::mt19937 random(2);
   events::Tracks tracks;
-  for (int id = 0; id < 20; ++id) AddTrack(id, 80, 0.003, 0.01 * id, 1.0, false, &random, &tracks);
+  for (int id = 0; id < 20; ++id) AddTrack({.id = id, .speed = 80, .begin_s = 0.01 * id}, &random, &tracks);
   Sort(&tracks);
   const events::Tracks resampled = Resample(tracks, {});
   ASSERT_GT(resampled.size(), 500u);
@@ -55,7 +63,8 @@ TEST(Resampling, IsExactOnStraightMotionAndNeverExtrapolates) {
 TEST(Resampling, FittedLineBeatsInterpolationOfQuantisedPositions) {
   std::mt19937 random(3);
   events::Tracks tracks;
-  for (int id = 0; id < 20; ++id) AddTrack(id, 300 + id, 0.002, 0, 1.0, true, &random, &tracks);
+  for (int id = 0; id < 20; ++id)
+    AddTrack({.id = id, .speed = 300.0 + id, .interval_s = 0.002, .quantised = true}, &random, &tracks);
   Sort(&tracks);
   const auto rms = [&](double window) {
     double sum = 0.0;
@@ -68,17 +77,17 @@ TEST(Resampling, FittedLineBeatsInterpolationOfQuantisedPositions) {
   EXPECT_LT(rms(0.01), 0.7 * rms(0.0));
 }
 
-TEST(Resampling, LeavesLongGapsOpen) {
+TEST(Resampling, DoesNotInterpolateLongGaps) {
   std::mt19937 random(4);
   events::Tracks tracks;
-  AddTrack(1, 50, 0.003, 0.0, 0.4, false, &random, &tracks);
-  AddTrack(1, 50, 0.003, 0.8, 1.2, false, &random, &tracks);
+  AddTrack({.id = 1, .speed = 50, .end_s = 0.4}, &random, &tracks);
+  AddTrack({.id = 1, .speed = 50, .begin_s = 0.8, .end_s = 1.2}, &random, &tracks);
   for (const auto& o : Resample(tracks, {.max_gap_s = 0.2})) {
     EXPECT_TRUE(ToSeconds(o.t) < 0.41 || ToSeconds(o.t) > 0.79) << ToSeconds(o.t);
   }
 }
 
-TEST(Resampling, PassesOverAGapOfManyYears) {
+TEST(Resampling, SkipsAGapOfManyYears) {
   const TimeNs late = 1'000'000'000 * kNsPerSecond;
   const TimeNs ms = 1'000'000;
   const events::Tracks tracks{{1, 0, 5, 5}, {1, 50 * ms, 5, 5}, {1, late, 6, 5}, {1, late + 50 * ms, 6, 5}};
@@ -86,28 +95,6 @@ TEST(Resampling, PassesOverAGapOfManyYears) {
   ASSERT_EQ(resampled.size(), 6u);
   EXPECT_EQ(resampled[2].t, 50 * ms);
   EXPECT_EQ(resampled[3].t, late);
-}
-
-TEST(Resampling, FramesHoldUndistortedFeaturesWithTheLensJacobian) {
-  const geometry::Camera camera = testing::DriveCamera();
-  const events::Tracks tracks = {
-      {3, 10, 300.0, 40.0}, {7, 10, 50.0, 200.0}, {7, 10, 50.0, 200.0}, {3, 20, 301.0, 41.0}};
-  const auto frames = BuildFrames(tracks, camera);
-  ASSERT_EQ(frames.size(), 2u);
-  ASSERT_EQ(frames[0].features.size(), 2u);  // the repeated sighting counts once
-  EXPECT_EQ(frames[1].t, 20);
-  const Feature* const feature = frames[0].Find(3);
-  ASSERT_TRUE(feature);
-  EXPECT_FALSE(frames[1].Find(7));
-  EXPECT_LT((camera.Distort(feature->x) - Eigen::Vector2d(300.0, 40.0)).norm(), 1e-6);
-  const Eigen::Vector2d d(1e-3, -2e-3);
-  const Eigen::Vector2d moved = camera.Distort(feature->x + d) - camera.Distort(feature->x);
-  EXPECT_LT((feature->px_per_unit * d - moved).norm(), 5e-3);
-}
-
-TEST(Resampling, RefusesTracksOffTheSensor) {
-  const events::Tracks tracks = {{1, 0, 10, 10}, {2, 0, 400, 10}};
-  EXPECT_THROW(BuildFrames(tracks, testing::DriveCamera()), Error);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 namespace evo::geometry {
 
-/// Left DAVIS346 of MVSEC's outdoor_day, as published there.
+/// The left DAVIS346 of MVSEC's outdoor_day, as published (A. Z. Zhu et al., RA-L 2018).
 inline Calibration MvsecDavis346() {
   return {Distortion::kEquidistant,
           346,
@@ -16,7 +16,7 @@ inline Calibration MvsecDavis346() {
           {-0.033904378348448685, -0.01537260902537579, -0.022284741346941413, 0.0069204143687187645, 0.0}};
 }
 
-/// DAVIS240C of UZH's boxes, poster and slider sequences, as published there.
+/// The DAVIS240C of UZH's boxes, poster and slider sequences, as published (E. Mueggler et al., IJRR 2017).
 inline Calibration UzhDavis240c() {
   return {Distortion::kRadTan,
           240,

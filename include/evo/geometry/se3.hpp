@@ -12,24 +12,24 @@ namespace so3 {
 
 /// The 3x3 matrix with Hat(a) * b = a x b.
 Eigen::Matrix3d Hat(const Eigen::Vector3d& a);
-/// Rodrigues' formula; `phi` is axis times angle in rad.
+/// Rodrigues' formula; `phi` is the axis times the angle in rad.
 Eigen::Quaterniond Exp(const Eigen::Vector3d& phi);
-/// Axis times angle in rad, the angle in [0, pi].
+/// The axis times the angle in rad, the angle in [0, pi].
 Eigen::Vector3d Log(const Eigen::Quaterniond& rotation);
 /// J with Exp(phi + d) ~ Exp(J d) Exp(phi) for small d.
 Eigen::Matrix3d LeftJacobian(const Eigen::Vector3d& phi);
 
 }  // namespace so3
 
-/// A rigid motion. T_a_b takes coordinates in frame b to frame a, so T_a_c = T_a_b * T_b_c.
+/// A rigid motion. T_a_b takes coordinates in frame b to frame a: T_a_c = T_a_b * T_b_c.
 class SE3 {
  public:
   SE3() = default;
-  /// `rotation` is normalised here.
+  /// Normalises `rotation`.
   SE3(const Eigen::Quaterniond& rotation, const Eigen::Vector3d& translation)
       : rotation_(rotation.normalized()), translation_(translation) {}
 
-  /// The exponential of a twist xi = (rho, phi), translation first (m, rad), as in the paper's equation 1.
+  /// The exponential of a twist xi = (rho, phi), translation first (m, rad), as in D. Zhu's equation 1.
   static SE3 Exp(const Vector6d& xi);
   Vector6d Log() const;
 
@@ -47,7 +47,11 @@ class SE3 {
   Eigen::Vector3d translation_ = Eigen::Vector3d::Zero();
 };
 
-/// The motion from `a` to `b` at fraction `s` in [0, 1]: great-circle rotation, straight translation.
+/// Ad(T) for twists (translation, rotation): T Exp(xi) = Exp(Ad(T) xi) T.
+Matrix6d Adjoint(const SE3& T);
+
+/// The motion between `a` (s = 0) and `b` (s = 1): spherical interpolation of the rotation, linear interpolation of the
+/// translation.
 SE3 Interpolate(const SE3& a, const SE3& b, double s);
 
 }  // namespace evo::geometry

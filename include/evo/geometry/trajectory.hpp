@@ -16,18 +16,18 @@ struct StampedPose {
 /// Poses in strictly increasing order of time.
 using Trajectory = std::vector<StampedPose>;
 
-/// How far a pose may be off: covariance of (x, y, z, rx, ry, rz), its position and its rotation vector, both along the
-/// axes of the world.
+/// The covariance of a pose's error (x, y, z, rx, ry, rz): position and rotation vector along the axes of the world,
+/// in the trajectory's unit of length and rad.
 struct StampedCovariance {
   TimeNs t = 0;
   Matrix6d covariance;
 };
 
-/// The pose at `t`, interpolated between its neighbours. Empty outside the trajectory, which is never extrapolated, and
-/// where the neighbours are more than `max_interval` apart.
+/// The pose at `t`, interpolated between its neighbours. Empty outside the trajectory and where the neighbours are more
+/// than `max_interval` apart.
 std::optional<SE3> PoseAt(const Trajectory& trajectory, TimeNs t, TimeNs max_interval);
 
-/// From position to position, m; 0 for one pose or none.
+/// The sum of the distances between consecutive positions; 0 for less than two poses.
 double PathLength(const Trajectory& trajectory);
 
 }  // namespace evo::geometry

@@ -8,29 +8,29 @@
 
 namespace evo::geometry {
 
-/// The depths (z coordinates) of one point in two views, from Z2 x2 = Z1 R x1 + t (the paper's equation 6) in the
-/// least-squares sense. Homogeneous x = (u, v, 1) on the plane z = 1; `T_2_1` takes coordinates in camera 1 to camera
-/// 2. The depths may be negative. Empty where the rays are parallel.
+/// The depths (z coordinates) of one point in two views.
 struct PairDepths {
   double z1 = 0.0;
   double z2 = 0.0;
 };
+/// The least-squares solution of Z2 x2 = Z1 R x1 + t (D. Zhu, equation 6) for both depths. Its equation 7 eliminates Z2
+/// instead. x = (u, v, 1) on the normalized plane z = 1, (R, t) = `T_2_1`. The depths may be negative. Empty if the
+/// rays are parallel.
 std::optional<PairDepths> TriangulatePair(const Eigen::Vector2d& x1, const Eigen::Vector2d& x2, const SE3& T_2_1);
 
-/// One sighting of a point: the camera's pose and where on its plane z = 1 the point was seen.
+/// One observation of a point.
 struct View {
   SE3 T_cam_world;
-  Eigen::Vector2d x;
+  Eigen::Vector2d x;  ///< on the normalized plane z = 1
 };
 
 struct TriangulatedPoint {
   Eigen::Vector3d position_world;
-  Eigen::Matrix3d covariance;  ///< for a noise of one unit on the plane z = 1: multiply by the noise's variance
-  double parallax = 0.0;       ///< rad, the largest angle between the first ray and any other
+  Eigen::Matrix3d covariance;  ///< per unit variance of the observations on the plane z = 1
 };
 
-/// A point from two or more views: the point nearest to all rays, then Gauss-Newton on the reprojection error.
-/// Empty where the rays do not fix the point or it ends behind one of the cameras.
+/// Triangulates a point from two or more views: the point nearest to all rays, then Gauss-Newton on the reprojection
+/// error. Empty if the rays do not determine the point or it lies behind one of the cameras.
 std::optional<TriangulatedPoint> TriangulateViews(std::span<const View> views);
 
 }  // namespace evo::geometry

@@ -5,12 +5,12 @@
 
 namespace evo::odometry {
 
-/// A point of the map: what one track has converged to, and how well its frames agreed with it.
+/// A point of the map with the track that it belongs to.
 struct Point {
   std::int64_t track = 0;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< world
-  int inliers = 0;                                     ///< frames that agreed with the point
-  int outliers = 0;                                    ///< frames that contradicted it
+  int inliers = 0;                                     ///< number of frames that agree with the point
+  int outliers = 0;                                    ///< number of frames that contradict the point
 };
 
 }  // namespace evo::odometry

@@ -60,7 +60,8 @@ std::string FormatGroundScale(const odometry::GroundScale& scale) {
   if (!scale.found) return "scale      arbitrary, not held: the path over a road is too short\n";
   return fmt::format(
       "scale      {}, from {} tracks on the ground along {:.0f} % of the path, standard deviation {:.2f} %\n",
-      scale.metric ? "metres" : "arbitrary, held", scale.tracks, 100.0 * scale.covered, 100.0 * scale.error);
+      scale.metric ? "metres" : "arbitrary, held", scale.tracks, 100.0 * scale.covered_ratio,
+      100.0 * scale.relative_sigma);
 }
 
 }  // namespace

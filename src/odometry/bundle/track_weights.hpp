@@ -3,19 +3,20 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "evo/odometry/bundle_adjuster.hpp"
+#include "odometry/bundle/bundle_problem.hpp"
 
 namespace evo::odometry {
 
-/// Errors beyond so many standard deviations are outliers.
+/// Errors beyond this many standard deviations are outliers.
 inline constexpr double kOutlierSigmas = 5.0;
 
-/// Standard deviation of a coordinate of the errors, from the median of their norms; px, never quite 0.
-double MeasureNoise(const std::vector<Eigen::Vector2d>& errors);
+/// Robust standard deviation of a coordinate of the errors in px, from the median of their norms; at least 0.05.
+double EstimateNoise(const std::vector<Eigen::Vector2d>& errors_px);
 
-/// Sets the weights of all points: some tracks follow a sharp corner, others a smudge, and each has its own noise. Its
-/// variance is drawn from an inverse gamma distribution about the usual one and estimated with the innovations that the
-/// problem leaves at present (see InnovationStep); the median weight is 1.
-void WeighTracks(double drift, BundleProblem* problem);
+/// Sets the weight of every point from its track's own noise: one track follows a sharp corner, another a blurred one.
+/// The noise variance has a scaled inverse chi-squared prior about the typical one (A. Gelman et al.: Bayesian Data
+/// Analysis, section 2.6) and is estimated from the innovations of the problem's present values. The median weight
+/// is 1.
+void SetTrackWeights(double drift_variance_ratio, BundleProblem* problem);
 
 }  // namespace evo::odometry

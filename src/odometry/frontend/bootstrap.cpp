@@ -1,58 +1,68 @@
-#include "evo/odometry/bootstrap.hpp"
+#include "odometry/frontend/bootstrap.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
+#include <utility>
 
 #include "evo/core/median.hpp"
 #include "evo/geometry/triangulation.hpp"
 #include "evo/geometry/two_view.hpp"
-#include "evo/odometry/bundle_adjuster.hpp"
-#include "evo/odometry/pose_optimizer.hpp"
+#include "odometry/bundle/bundle_adjuster.hpp"
+#include "odometry/bundle/reprojection.hpp"
+#include "odometry/frontend/pose_optimizer.hpp"
 
 namespace evo::odometry {
 
 namespace {
 
-constexpr double kHoldPx = 1.0;      // image motion after which a frame is held as another first frame
-constexpr double kTryAgainPx = 1.5;  // image motion between two tries
-constexpr int kRefinedFrames = 12;   // of those between the pair
-constexpr double kGoodPx = 2.0;      // residual after refinement
-constexpr double kGoodShare = 0.75;  // of all residuals
+constexpr double kCandidateSpacingPx = 1.0;  // image motion between candidates; a closer one sees the same
+constexpr double kRetryDisparityPx = 1.5;    // image motion between tries of a pair; a smaller one changes nothing
+constexpr int kMaxRefinedFrames = 12;        // of the first map; more cost time and add little baseline
+constexpr double kMaxResidualPx = 2.0;       // of a good observation after the refinement
+constexpr double kMinGoodRatio = 0.75;       // of the observations; fewer: the motion is wrong
 
-std::string Decimal(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f", value);
-  return text;
-}
-
+/// The angle between the rays from two cameras to one point, rad.
 double Parallax(const Feature& first, const Feature& second, const geometry::SE3& T_2_1) {
   const Eigen::Vector3d a = T_2_1.rotation() * first.x.homogeneous();
   const Eigen::Vector3d b = second.x.homogeneous();
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-}  // namespace
-
-void Register(Parameters& parameters, BootstrapOptions& options) {
-  parameters.Add("odometry.bootstrap.min_disparity_px", &options.min_disparity_px, 1, 200,
-                 "median image motion in px from which two frames are tried");
-  parameters.Add("odometry.bootstrap.max_disparity_px", &options.max_disparity_px, 2, 500,
-                 "median image motion in px beyond which the older frame is given up");
-  parameters.Add("odometry.bootstrap.inlier_px", &options.inlier_px, 0.1, 20, "epipolar error of an inlier in px");
-  parameters.Add("odometry.bootstrap.min_inlier_ratio", &options.min_inlier_ratio, 0, 1,
-                 "share of the common tracks that must be inliers");
-  parameters.Add("odometry.bootstrap.min_inliers", &options.min_inliers, 8, 1000, "inliers that a first map needs");
-  parameters.Add("odometry.bootstrap.min_shared_ratio", &options.min_shared_ratio, 0, 1,
-                 "share of the second frame's tracks that the first must have seen");
-  parameters.Add("odometry.bootstrap.min_parallax_deg", &options.min_parallax_deg, 0.05, 30,
-                 "median parallax of the first map's points in degrees");
-  parameters.Add("odometry.bootstrap.median_depth", &options.median_depth, 1e-3, 1e4,
-                 "median depth given to the first map: sets the unit of length");
-  parameters.Add("odometry.bootstrap.refine", &options.refine,
-                 "bundle-adjust the first map with frames between its two");
+/// Indices of the frames to adjust, evenly spaced from the first to the last.
+std::vector<int> ChooseFrames(int count) {
+  const int chosen_count = std::min(count, kMaxRefinedFrames);
+  std::vector<int> chosen;
+  for (int k = 0; k < chosen_count; ++k) chosen.push_back(k * (count - 1) / (chosen_count - 1));
+  return chosen;
 }
+
+/// The bundle problem of a first map; its poses are those of the frames first + chosen[k].
+BundleProblem BuildProblem(const Bootstrap& bootstrap, const std::vector<Frame>& frames,
+                           const std::vector<int>& chosen) {
+  BundleProblem problem;
+  for (const int frame : chosen) problem.T_cam_world.push_back(bootstrap.T_cam_world[frame]);
+  for (std::size_t p = 0; p < bootstrap.points.size(); ++p) {
+    const Eigen::Vector3d& position = bootstrap.points[p].position;
+    problem.points.push_back({0, Eigen::Vector3d(position.x(), position.y(), 1.0) / position.z()});
+    for (std::size_t k = 0; k < chosen.size(); ++k) {
+      const Feature* const feature = frames[bootstrap.first + chosen[k]].Find(bootstrap.points[p].track);
+      if (!feature) continue;
+      problem.observations.push_back(
+          {static_cast<int>(k), static_cast<int>(p), feature->x, feature->J_pixel_normalized});
+    }
+  }
+  return problem;
+}
+
+bool ResidualsAreSmall(const std::vector<Eigen::Vector2d>& errors) {
+  const auto good = std::ranges::count_if(errors, [](const auto& error) { return error.norm() < kMaxResidualPx; });
+  return static_cast<double>(good) >= kMinGoodRatio * static_cast<double>(errors.size());
+}
+
+}  // namespace
 
 Bootstrapper::Bootstrapper(const BootstrapOptions& options, const std::vector<Frame>& frames, double focal_px)
     : options_(options), frames_(frames), focal_px_(focal_px) {
@@ -60,94 +70,97 @@ Bootstrapper::Bootstrapper(const BootstrapOptions& options, const std::vector<Fr
 }
 
 void Bootstrapper::Reset() {
-  held_.clear();
-  next_try_px_ = options_.min_disparity_px;
-  obstacle_ = "no frames";
+  candidates_.clear();
+  next_try_disparity_px_ = options_.min_disparity_px;
+  failure_reason_ = "no frames";
 }
 
-bool Bootstrapper::Refuse(const std::string& why) {
-  obstacle_ = why;
+bool Bootstrapper::Fail(std::string reason) {
+  failure_reason_ = std::move(reason);
   return false;
+}
+
+void Bootstrapper::DropOldestCandidate() {
+  candidates_.pop_front();
+  next_try_disparity_px_ = options_.min_disparity_px;
 }
 
 std::optional<Bootstrap> Bootstrapper::Add(int index) {
   const Frame& frame = frames_[index];
-  const auto give_up_oldest = [&] {
-    held_.pop_front();
-    next_try_px_ = options_.min_disparity_px;
-  };
   std::optional<Bootstrap> bootstrap;
-  while (!held_.empty() && !bootstrap) {
-    const auto pairs = Match(frames_[held_.front()], frame);
-    // The few tracks that are there when a car sets off know its first steps badly.
-    const int needed = std::max(
+  while (!candidates_.empty() && !bootstrap) {
+    const auto pairs = Match(frames_[candidates_.front()], frame);
+    // The few tracks of a car that has just set off determine its first motion badly.
+    const int min_pairs = std::max(
         options_.min_inliers, static_cast<int>(options_.min_shared_ratio * static_cast<double>(frame.features.size())));
-    if (static_cast<int>(pairs.size()) < needed) {
-      Refuse("only " + std::to_string(pairs.size()) + " tracks of " + std::to_string(frame.features.size()) +
-             " live long enough; " + std::to_string(needed) + " are needed");
-      give_up_oldest();
+    if (static_cast<int>(pairs.size()) < min_pairs) {
+      Fail(fmt::format("only {} tracks of {} live long enough; {} are needed", pairs.size(), frame.features.size(),
+                       min_pairs));
+      DropOldestCandidate();
       continue;
     }
-    const double disparity = MedianDisparity(pairs);
-    if (disparity < next_try_px_) {
-      if (disparity < options_.min_disparity_px) {
-        Refuse("too little motion: the image moved " + Decimal(disparity) + " px, " +
-               Decimal(options_.min_disparity_px) + " px are needed");
+    const double disparity_px = MedianDisparity(pairs);
+    if (disparity_px < next_try_disparity_px_) {
+      if (disparity_px < options_.min_disparity_px) {
+        Fail(fmt::format("too little motion: the image moved {:.1f} px, {:.1f} px are needed", disparity_px,
+                         options_.min_disparity_px));
       }
       break;
     }
-    bootstrap = Try(held_.front(), index);
-    next_try_px_ = disparity + kTryAgainPx;
-    if (bootstrap || disparity < options_.max_disparity_px) break;
-    give_up_oldest();
+    bootstrap = TryPair(candidates_.front(), index);
+    next_try_disparity_px_ = disparity_px + kRetryDisparityPx;
+    if (bootstrap || disparity_px < options_.max_disparity_px) break;
+    DropOldestCandidate();
   }
-  if (held_.empty() || MedianDisparity(Match(frames_[held_.back()], frame)) > kHoldPx) held_.push_back(index);
+  if (candidates_.empty() || MedianDisparity(Match(frames_[candidates_.back()], frame)) > kCandidateSpacingPx) {
+    candidates_.push_back(index);
+  }
   return bootstrap;
 }
 
-std::optional<Bootstrap> Bootstrapper::Try(int first, int last) {
+std::optional<Bootstrap> Bootstrapper::TryPair(int first, int last) {
   const auto pairs = Match(frames_[first], frames_[last]);
   std::vector<geometry::Correspondence> correspondences;
   correspondences.reserve(pairs.size());
   for (const auto& [a, b] : pairs) correspondences.push_back({a->x, b->x});
-  const auto motion = geometry::EstimateRelativePose(correspondences, {.threshold = options_.inlier_px / focal_px_});
+  const auto motion = geometry::EstimateRelativePose(
+      correspondences, {.max_sampson_error = options_.inlier_px / focal_px_});  // equations 9-13
   const int inliers = motion ? motion->inlier_count : 0;
   if (inliers < options_.min_inliers || inliers < options_.min_inlier_ratio * static_cast<double>(pairs.size())) {
-    Refuse("no rigid motion: " + std::to_string(inliers) + " of " + std::to_string(pairs.size()) +
-           " tracks agree with the best one");
+    Fail(fmt::format("no rigid motion: {} of {} tracks agree with the best one", inliers, pairs.size()));
     return std::nullopt;
   }
   std::vector<double> parallaxes;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (motion->inliers[i]) parallaxes.push_back(Parallax(*pairs[i].first, *pairs[i].second, motion->T_2_1));
   }
-  if (!HasParallax(parallaxes)) return std::nullopt;
-  auto bootstrap = FromMotion(first, last, pairs, motion->T_2_1, motion->inliers);
+  if (!CheckParallax(parallaxes)) return std::nullopt;
+  auto bootstrap = BuildMap(first, last, pairs, motion->T_2_1, motion->inliers);
   if (!bootstrap) return std::nullopt;
-  // Once more: two views of a turn also fit a slightly other turn and a move past things at one distance. All frames
-  // together do not.
+  // Two views of a rotation are also explained by a slightly different rotation and a translation past points at one
+  // depth. All frames together are not, so the parallax is checked again with the refined motion.
   parallaxes.clear();
   for (const Point& point : bootstrap->points) {
     const Feature& begin = *frames_[first].Find(point.track);
     const Feature& end = *frames_[last].Find(point.track);
     parallaxes.push_back(Parallax(begin, end, bootstrap->T_cam_world.back()));
   }
-  return HasParallax(parallaxes) ? bootstrap : std::nullopt;
+  return CheckParallax(parallaxes) ? bootstrap : std::nullopt;
 }
 
-bool Bootstrapper::HasParallax(const std::vector<double>& parallaxes) {
+bool Bootstrapper::CheckParallax(const std::vector<double>& parallaxes) {
   const double degrees = Median(parallaxes) * 180.0 / std::numbers::pi;
   return degrees >= options_.min_parallax_deg ||
-         Refuse("too little parallax (" + Decimal(degrees) + " degrees): the camera only turned");
+         Fail(fmt::format("too little parallax ({:.1f} degrees): the camera only rotated", degrees));
 }
 
-std::optional<Bootstrap> Bootstrapper::FromMotion(int first, int last, const std::vector<FeaturePair>& pairs,
-                                                  const geometry::SE3& T_2_1, const std::vector<bool>& inliers) {
+std::optional<Bootstrap> Bootstrapper::BuildMap(int first, int last, const std::vector<FeaturePair>& pairs,
+                                                const geometry::SE3& T_2_1, const std::vector<bool>& inliers) {
   Bootstrap bootstrap{first, last, std::vector<geometry::SE3>(static_cast<std::size_t>(last - first + 1)), {}};
   std::vector<double> depths;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (!inliers[i]) continue;
-    const auto depth = geometry::TriangulatePair(pairs[i].first->x, pairs[i].second->x, T_2_1);
+    const auto depth = geometry::TriangulatePair(pairs[i].first->x, pairs[i].second->x, T_2_1);  // equation 6
     if (!depth || !(depth->z1 > 0.0)) continue;
     bootstrap.points.push_back({pairs[i].first->track, depth->z1 * pairs[i].first->x.homogeneous(), 1, 0});
     depths.push_back(depth->z1);
@@ -156,54 +169,36 @@ std::optional<Bootstrap> Bootstrapper::FromMotion(int first, int last, const std
   const double scale = options_.median_depth / Median(depths);
   for (Point& point : bootstrap.points) point.position *= scale;
   bootstrap.T_cam_world.back() = geometry::SE3(T_2_1.rotation(), scale * T_2_1.translation());
-  const bool agrees =
-      TrackBetween(&bootstrap) && (!options_.refine || (Refine(&bootstrap) && TrackBetween(&bootstrap)));
-  if (!agrees) {
-    Refuse("the frames between do not agree with the pair's motion");
+  const bool consistent =
+      TrackFrames(&bootstrap) && (!options_.refine || (RefineMap(&bootstrap) && TrackFrames(&bootstrap)));
+  if (!consistent) {
+    Fail("the frames between do not agree with the pair's motion");
     return std::nullopt;
   }
   return bootstrap;
 }
 
-/// Poses of the frames between the pair against the points.
-bool Bootstrapper::TrackBetween(Bootstrap* bootstrap) const {
+bool Bootstrapper::TrackFrames(Bootstrap* bootstrap) const {
   const PoseOptimizer optimizer({});
   for (std::size_t i = 1; i < bootstrap->T_cam_world.size(); ++i) {
     std::vector<PoseObservation> observations;
     const Frame& frame = frames_[static_cast<std::size_t>(bootstrap->first) + i];
     for (const Point& point : bootstrap->points) {
       const Feature* const feature = frame.Find(point.track);
-      if (feature) observations.push_back({point.position, feature->x, feature->px_per_unit});
+      if (feature) observations.push_back({point.position, feature->x, feature->J_pixel_normalized});
     }
-    const auto estimate = optimizer.Optimize(observations, bootstrap->T_cam_world[i - 1]);
+    const auto estimate = optimizer.Optimize(observations, bootstrap->T_cam_world[i - 1]);  // equations 1-5
     if (!optimizer.Accepts(estimate)) return false;
     bootstrap->T_cam_world[i] = estimate.T_cam_world;
   }
   return true;
 }
 
-/// Bundle adjustment over some of the frames; whether nearly all residuals are small afterwards.
-bool Bootstrapper::Refine(Bootstrap* bootstrap) const {
-  const int count = static_cast<int>(bootstrap->T_cam_world.size());
-  const int used = std::min(count, kRefinedFrames);
-  BundleProblem problem;
-  std::vector<int> chosen;
-  for (int k = 0; k < used; ++k) {
-    chosen.push_back(k * (count - 1) / (used - 1));
-    problem.T_cam_world.push_back(bootstrap->T_cam_world[chosen.back()]);
-  }
-  for (std::size_t p = 0; p < bootstrap->points.size(); ++p) {
-    const Eigen::Vector3d& position = bootstrap->points[p].position;
-    problem.points.push_back({0, Eigen::Vector3d(position.x(), position.y(), 1.0) / position.z()});
-    for (int k = 0; k < used; ++k) {
-      const Feature* const feature = frames_[bootstrap->first + chosen[k]].Find(bootstrap->points[p].track);
-      if (feature) problem.observations.push_back({k, static_cast<int>(p), feature->x, feature->px_per_unit});
-    }
-  }
+bool Bootstrapper::RefineMap(Bootstrap* bootstrap) const {
+  const std::vector<int> chosen = ChooseFrames(static_cast<int>(bootstrap->T_cam_world.size()));
+  BundleProblem problem = BuildProblem(*bootstrap, frames_, chosen);
   AdjustBundle({}, &problem);
-  const auto errors = BundleErrors(problem);
-  const auto good = std::ranges::count_if(errors, [](const auto& error) { return error.norm() < kGoodPx; });
-  if (static_cast<double>(good) < kGoodShare * static_cast<double>(errors.size())) return false;
+  if (!ResidualsAreSmall(ReprojectionErrors(problem))) return false;
   std::vector<double> depths;
   for (const auto& point : problem.points) {
     if (point.inverse_depth.z() > 0.0) depths.push_back(1.0 / point.inverse_depth.z());
@@ -217,7 +212,7 @@ bool Bootstrapper::Refine(Bootstrap* bootstrap) const {
     points.back().position = scale * WorldPosition(problem, problem.points[p]);
   }
   bootstrap->points = std::move(points);
-  for (int k = 0; k < used; ++k) {
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
     const geometry::SE3& pose = problem.T_cam_world[k];
     bootstrap->T_cam_world[chosen[k]] = geometry::SE3(pose.rotation(), scale * pose.translation());
   }

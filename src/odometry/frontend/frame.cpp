@@ -1,4 +1,4 @@
-#include "evo/odometry/frame.hpp"
+#include "odometry/frontend/frame.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -32,8 +32,8 @@ double MedianDisparity(const std::vector<FeaturePair>& pairs) {
   std::vector<double> disparities;
   disparities.reserve(pairs.size());
   for (const auto& [first, second] : pairs) {
-    const Eigen::Matrix2d px_per_unit = 0.5 * (first->px_per_unit + second->px_per_unit);
-    disparities.push_back((px_per_unit * (second->x - first->x)).norm());
+    const Eigen::Matrix2d J_pixel_normalized = 0.5 * (first->J_pixel_normalized + second->J_pixel_normalized);
+    disparities.push_back((J_pixel_normalized * (second->x - first->x)).norm());
   }
   return Median(std::move(disparities));
 }

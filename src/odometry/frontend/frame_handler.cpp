@@ -1,42 +1,29 @@
-#include "evo/odometry/frame_handler.hpp"
+#include "odometry/frontend/frame_handler.hpp"
 
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
-
-#include "odometry/mapping/segment_alignment.hpp"
+#include <utility>
 
 namespace evo::odometry {
 
 namespace {
 
-constexpr double kPredictionSeconds = 0.5;  // a velocity older than this says nothing
-constexpr int kHighIndex = std::numeric_limits<int>::max();
+constexpr double kMaxPredictionSeconds = 0.5;  // an older velocity predicts nothing
+constexpr int kAllFrames = std::numeric_limits<int>::max();
+
+/// Length of the camera's path.
+double PathLength(const std::vector<geometry::SE3>& T_cam_world) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < T_cam_world.size(); ++i) {
+    length += (T_cam_world[i].Inverse().translation() - T_cam_world[i - 1].Inverse().translation()).norm();
+  }
+  return length;
+}
 
 }  // namespace
-
-void Register(Parameters& parameters, FrameHandlerOptions& options) {
-  parameters.Add("odometry.lag", &options.lag, 1, 100, "frames after which a frame's depths enter the map");
-  auto& key = options.key_frame;
-  parameters.Add("odometry.key_frame.translation", &key.translation, 0.001, 10,
-                 "translation since the last key frame over median depth");
-  parameters.Add("odometry.key_frame.rotation_deg", &key.rotation_deg, 0.1, 180,
-                 "rotation since the last key frame in degrees");
-  parameters.Add("odometry.key_frame.disparity_px", &key.disparity_px, 1, 1000,
-                 "median image motion since the last key frame in px");
-  parameters.Add("odometry.key_frame.min_shared_ratio", &key.min_shared_ratio, 0, 1,
-                 "share of the tracks that the last key frame must have seen");
-  parameters.Add("odometry.key_frame.min_disparity_px", &key.min_disparity_px, 0, 100,
-                 "no key frame with less image motion in px than this");
-  parameters.Add("odometry.key_frame.every_frames", &key.every_frames, 0, 1000,
-                 "instead of these rules a key frame every so many frames; 0: by the rules");
-  Register(parameters, options.bootstrap);
-  Register(parameters, options.pose);
-  Register(parameters, options.mapper);
-}
 
 FrameHandler::FrameHandler(const FrameHandlerOptions& options, const std::vector<Frame>& frames, double focal_px,
                            int threads)
@@ -51,40 +38,39 @@ FrameHandler::FrameHandler(const FrameHandlerOptions& options, const std::vector
 void FrameHandler::Run(const std::function<void(double)>& progress) {
   const int count = static_cast<int>(frames_.size());
   for (int index = 0; index < count; ++index) {
-    Step(index);
+    ProcessFrame(index);
     progress(static_cast<double>(index + 1) / count);
   }
-  Apply(kHighIndex);
+  ApplyMapUpdates(kAllFrames);
 }
 
 geometry::SE3 FrameHandler::Pose(int index) const {
-  const FrameRecord& record = records_[index];
-  return record.T_cam_reference * key_poses_[record.reference];
+  const KeyFramePose& pose = records_[index].pose;
+  return pose.T_cam_key * key_poses_[pose.key_frame];
 }
 
 std::vector<Point> FrameHandler::Points() const {
-  std::vector<Point> points = mapper_.finished();
+  std::vector<Point> points = mapper_.finished_points();
   for (const auto& [track, point] : mapper_.map().points) points.push_back(point);
   return points;
 }
 
-void FrameHandler::Step(int index) {
-  Apply(index - options_.lag);
-  if (last_ >= 0 && Track(index)) {
+void FrameHandler::ProcessFrame(int index) {
+  ApplyMapUpdates(index - options_.lag);
+  if (last_tracked_ >= 0 && TrackFrame(index)) {
     if (!tracking_) spdlog::info("odometry: found the map again at {} s", FormatTime(frames_[index].t));
     tracking_ = true;
     return;
   }
   if (tracking_) {
     spdlog::warn("odometry: lost at {} s", FormatTime(frames_[index].t));
-    losses_.push_back(index);
     tracking_ = false;
     bootstrapper_.Reset();
   }
-  if (auto bootstrap = bootstrapper_.Add(index)) StartSegment(std::move(*bootstrap));
+  if (auto bootstrap = bootstrapper_.Add(index)) StartSegment(std::move(*bootstrap));  // equations 9-13
 }
 
-void FrameHandler::Apply(int index) {
+void FrameHandler::ApplyMapUpdates(int index) {
   for (const MapUpdate& update : mapping_.Collect(index)) {
     for (const auto& [track, position] : update.points) landmarks_[track] = position;
     for (const auto track : update.removed) landmarks_.erase(track);
@@ -92,81 +78,83 @@ void FrameHandler::Apply(int index) {
   }
 }
 
-FrameHandler::Sighted FrameHandler::Sight(const Frame& frame) const {
-  Sighted sighted;
+FrameHandler::LandmarkMatches FrameHandler::MatchLandmarks(const Frame& frame) const {
+  LandmarkMatches matches;
   for (const Feature& feature : frame.features) {
     const auto found = landmarks_.find(feature.track);
     if (found == landmarks_.end()) continue;
-    sighted.tracks.push_back(feature.track);
-    sighted.observations.push_back({found->second, feature.x, feature.px_per_unit});
+    matches.tracks.push_back(feature.track);
+    matches.observations.push_back({found->second, feature.x, feature.J_pixel_normalized});
   }
-  return sighted;
+  return matches;
 }
 
-/// The last pose carried on with the last velocity.
-geometry::SE3 FrameHandler::Predict(TimeNs t) const {
-  geometry::SE3 last = Pose(last_);
-  const double ahead = ToSeconds(t - frames_[last_].t);
-  if (before_last_ < 0 || ahead > kPredictionSeconds) return last;
-  const double interval = ToSeconds(frames_[last_].t - frames_[before_last_].t);
-  const geometry::Vector6d step = (last * Pose(before_last_).Inverse()).Log();
-  return geometry::SE3::Exp(ahead / interval * step) * last;
+std::optional<FrameHandler::LastMotion> FrameHandler::MeasureLastMotion() const {
+  if (previous_tracked_ < 0) return std::nullopt;
+  return LastMotion{(Pose(last_tracked_) * Pose(previous_tracked_).Inverse()).Log(),
+                    ToSeconds(frames_[last_tracked_].t - frames_[previous_tracked_].t)};
 }
 
-bool FrameHandler::Track(int index) {
-  const Sighted sighted = Sight(frames_[index]);
-  PoseEstimate estimate = optimizer_.Optimize(sighted.observations, Predict(frames_[index].t));
-  if (!optimizer_.Accepts(estimate)) estimate = optimizer_.Optimize(sighted.observations, Pose(last_));
+geometry::SE3 FrameHandler::PredictPose(TimeNs t) const {
+  const geometry::SE3 last = Pose(last_tracked_);
+  const auto motion = MeasureLastMotion();
+  const double ahead_s = ToSeconds(t - frames_[last_tracked_].t);
+  return motion ? geometry::SE3::Exp(ahead_s / motion->interval_s * motion->twist) * last : last;
+}
+
+bool FrameHandler::TrackFrame(int index) {
+  const Frame& frame = frames_[index];
+  const LandmarkMatches matches = MatchLandmarks(frame);
+  const geometry::SE3 last = Pose(last_tracked_);
+  const bool velocity_is_recent = ToSeconds(frame.t - frames_[last_tracked_].t) <= kMaxPredictionSeconds;
+  PoseEstimate estimate =
+      optimizer_.Optimize(matches.observations, velocity_is_recent ? PredictPose(frame.t) : last);  // equations 1-5
+  if (!optimizer_.Accepts(estimate)) estimate = optimizer_.Optimize(matches.observations, last);
   if (!optimizer_.Accepts(estimate)) return false;
-  Commit(index, sighted, estimate);
+  FrameMessage message;
+  for (std::size_t i = 0; i < matches.tracks.size(); ++i) {
+    (estimate.inliers[i] ? message.inliers : message.outliers).push_back(matches.tracks[i]);
+  }
+  message.is_key_frame = IsKeyFrame(index, estimate.T_cam_world, matches);
+  RecordPose(index, estimate.T_cam_world, estimate.inlier_count, std::move(message));
   return true;
 }
 
-void FrameHandler::Commit(int index, const Sighted& sighted, const PoseEstimate& estimate) {
-  FrameMessage message;
-  for (std::size_t i = 0; i < sighted.tracks.size(); ++i) {
-    (estimate.inliers[i] ? message.inliers : message.outliers).push_back(sighted.tracks[i]);
+void FrameHandler::RecordPose(int index, const geometry::SE3& T_cam_world, int inliers, FrameMessage message) {
+  message.index = index;
+  message.frame = frames_[index];
+  if (message.new_map) {
+    message.pose = {-1, T_cam_world};
+  } else {
+    const int key_frame = static_cast<int>(key_poses_.size()) - 1;
+    message.pose = {key_frame, T_cam_world * key_poses_[key_frame].Inverse()};
   }
-  const bool key_frame = IsKeyFrame(index, estimate.T_cam_world, sighted);
-  Remember(index, estimate.T_cam_world, key_frame, estimate.inlier_count, &message);
+  records_[index] = {static_cast<int>(bootstraps_.size()) - 1, message.pose, inliers};
+  if (message.is_key_frame) {
+    key_poses_.push_back(T_cam_world);
+    key_frames_.push_back(index);
+    records_[index].pose = {static_cast<int>(key_poses_.size()) - 1, geometry::SE3()};
+  }
+  previous_tracked_ = message.new_map ? -1 : last_tracked_;
+  last_tracked_ = index;
   mapping_.Post(std::move(message));
 }
 
-/// Records the pose of a frame relative to the newest key frame, and makes it one itself if asked to.
-void FrameHandler::Remember(int index, const geometry::SE3& T_cam_world, bool key_frame, int inliers,
-                            FrameMessage* message) {
-  message->index = index;
-  message->frame = frames_[index];
-  message->key_frame = key_frame;
-  message->reference = message->new_segment ? -1 : static_cast<int>(key_poses_.size()) - 1;
-  message->T_cam_reference =
-      message->new_segment ? T_cam_world : T_cam_world * key_poses_[message->reference].Inverse();
-  records_[index] = {static_cast<int>(bootstraps_.size()) - 1, message->reference, message->T_cam_reference, inliers};
-  if (key_frame) {
-    key_poses_.push_back(T_cam_world);
-    key_indices_.push_back(index);
-    records_[index].reference = static_cast<int>(key_poses_.size()) - 1;
-    records_[index].T_cam_reference = geometry::SE3();
-  }
-  before_last_ = message->new_segment ? -1 : last_;
-  last_ = index;
-}
-
-bool FrameHandler::IsKeyFrame(int index, const geometry::SE3& T_cam_world, const Sighted& sighted) const {
-  const auto& options = options_.key_frame;
-  if (options.every_frames > 0) return index - key_indices_.back() >= options.every_frames;
+bool FrameHandler::IsKeyFrame(int index, const geometry::SE3& T_cam_world, const LandmarkMatches& matches) const {
+  const KeyFrameOptions& options = options_.key_frame;
+  if (options.every_frames > 0) return index - key_frames_.back() >= options.every_frames;
   const Frame& frame = frames_[index];
-  const auto shared = Match(frames_[key_indices_.back()], frame);
-  const double disparity = MedianDisparity(shared);
-  if (!shared.empty() && disparity < options.min_disparity_px) return false;
-  if (disparity > options.disparity_px) return true;
+  const auto shared = Match(frames_[key_frames_.back()], frame);
+  const double disparity_px = MedianDisparity(shared);
+  if (!shared.empty() && disparity_px < options.min_disparity_px) return false;  // the camera stands
+  if (disparity_px > options.disparity_px) return true;
   if (static_cast<double>(shared.size()) < options.min_shared_ratio * static_cast<double>(frame.features.size())) {
     return true;
   }
   const geometry::SE3 motion = T_cam_world * key_poses_.back().Inverse();
   if (geometry::so3::Log(motion.rotation()).norm() > options.rotation_deg * std::numbers::pi / 180.0) return true;
   std::vector<double> depths;
-  for (const auto& observation : sighted.observations) {
+  for (const auto& observation : matches.observations) {
     const double z = (T_cam_world * observation.point_world).z();
     if (z > 0.0) depths.push_back(z);
   }
@@ -174,8 +162,8 @@ bool FrameHandler::IsKeyFrame(int index, const geometry::SE3& T_cam_world, const
 }
 
 void FrameHandler::StartSegment(Bootstrap bootstrap) {
-  Apply(kHighIndex);  // nothing of the old segment may arrive in the new one
-  if (last_ >= 0) PlaceSegment(&bootstrap);
+  ApplyMapUpdates(kAllFrames);  // so that no update of the old segment arrives in the new one
+  if (last_tracked_ >= 0) Transform(AlignSegment(bootstrap), &bootstrap);
   bootstraps_.push_back(bootstrap.first);
   spdlog::info("odometry: map of {} points from the frames at {} s and {} s", bootstrap.points.size(),
                FormatTime(frames_[bootstrap.first].t), FormatTime(frames_[bootstrap.last].t));
@@ -183,43 +171,27 @@ void FrameHandler::StartSegment(Bootstrap bootstrap) {
   for (const Point& point : bootstrap.points) landmarks_[point.track] = point.position;
   for (int index = bootstrap.first; index <= bootstrap.last; ++index) {
     FrameMessage message;
-    const bool first = index == bootstrap.first;
-    message.new_segment = first;
-    if (first) message.points = bootstrap.points;
-    Remember(index, bootstrap.T_cam_world[index - bootstrap.first], first || index == bootstrap.last,
-             static_cast<int>(Sight(frames_[index]).tracks.size()), &message);
-    mapping_.Post(std::move(message));
+    if (index == bootstrap.first) message.new_map = bootstrap.points;
+    message.is_key_frame = index == bootstrap.first || index == bootstrap.last;
+    RecordPose(index, bootstrap.T_cam_world[index - bootstrap.first],
+               static_cast<int>(MatchLandmarks(frames_[index]).tracks.size()), std::move(message));
   }
   tracking_ = true;
 }
 
-/// Moves and scales a new segment so that it continues the old one.
-void FrameHandler::PlaceSegment(Bootstrap* bootstrap) const {
-  auto similarity = AlignByPoints(bootstrap->points, landmarks_);
-  if (similarity) {
+Similarity FrameHandler::AlignSegment(const Bootstrap& bootstrap) const {
+  if (const auto similarity = AlignByPoints(bootstrap.points, landmarks_)) {
     spdlog::info("odometry: the new segment takes place and scale from tracks seen across the gap");
-  } else {
-    const TimeNs t = frames_[bootstrap->first].t;
-    double speed = 0.0;
-    geometry::SE3 start = Pose(last_);
-    if (before_last_ >= 0) {
-      const geometry::Vector6d step = (start * Pose(before_last_).Inverse()).Log();
-      const double interval = ToSeconds(frames_[last_].t - frames_[before_last_].t);
-      speed = step.head<3>().norm() / interval;
-      start = geometry::SE3::Exp(ToSeconds(t - frames_[last_].t) / interval * step) * start;
-    }
-    double path = 0.0;
-    for (std::size_t i = 1; i < bootstrap->T_cam_world.size(); ++i) {
-      path +=
-          (bootstrap->T_cam_world[i].Inverse().translation() - bootstrap->T_cam_world[i - 1].Inverse().translation())
-              .norm();
-    }
-    const double duration = ToSeconds(frames_[bootstrap->last].t - t);
-    const double scale = speed > 0.0 && path > 0.0 ? speed * duration / path : 1.0;
-    similarity = Similarity{scale, start.Inverse()};
-    spdlog::warn("odometry: no track crosses the gap; the new segment takes place and scale from the speed before it");
+    return *similarity;
   }
-  Transform(*similarity, bootstrap);
+  spdlog::warn("odometry: no track crosses the gap; the new segment takes place and scale from the speed before it");
+  const TimeNs t = frames_[bootstrap.first].t;
+  const geometry::SE3 T_world_local = PredictPose(t).Inverse();
+  const auto motion = MeasureLastMotion();
+  const double speed = motion ? motion->twist.head<3>().norm() / motion->interval_s : 0.0;  // units/s
+  const double path = PathLength(bootstrap.T_cam_world);
+  const double duration_s = ToSeconds(frames_[bootstrap.last].t - t);
+  return {speed > 0.0 && path > 0.0 ? speed * duration_s / path : 1.0, T_world_local};
 }
 
 }  // namespace evo::odometry

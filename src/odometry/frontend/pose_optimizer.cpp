@@ -1,4 +1,4 @@
-#include "evo/odometry/pose_optimizer.hpp"
+#include "odometry/frontend/pose_optimizer.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -7,29 +7,23 @@
 #include <utility>
 
 #include "evo/core/median.hpp"
+#include "evo/core/robust.hpp"
 
 namespace evo::odometry {
 
 namespace {
 
-constexpr int kHuberIterations = 3;
-constexpr double kSmallestScalePx = 0.2;  // a lucky fit of few points must not reject the next
-constexpr double kLargestScalePx = 5.0;   // a bad start must not make every residual an inlier
-constexpr double kHuber = 1.345;          // 95 % efficiency under Gaussian noise
-constexpr double kTukey = 4.685;          // likewise
-constexpr double kOutlierSigmas = 4.0;
+constexpr std::size_t kMinObservations = 3;  // two equations each for six unknowns
+constexpr int kHuberIterations = 3;          // enough to come within reach of Tukey's weights
+constexpr double kMinScalePx = 0.2;          // a chance fit of few points must not reject the next
+constexpr double kMaxScalePx = 5.0;          // a bad start must not make every observation an inlier
+constexpr double kOutlierSigmas = 4.0;       // a Gaussian error exceeds it in 2-d once in 3000
+constexpr double kDamping = 1e-9;            // relative; keeps a direction without information solvable
+constexpr double kMinStep2 = 1e-18;          // squared norm of a twist: rounding
 
-/// Standard deviation of a coordinate from the median norm of the residuals.
+/// Standard deviation of a coordinate, from the median norm of the residuals.
 double RobustScale(std::vector<double> norms) {
-  return std::clamp(kMedianNormToSigma * Median(std::move(norms)), kSmallestScalePx, kLargestScalePx);
-}
-
-double HuberWeight(double error, double width) { return error <= width ? 1.0 : width / error; }
-
-double TukeyWeight(double error, double width) {
-  if (error >= width) return 0.0;
-  const double inside = 1.0 - error * error / (width * width);
-  return inside * inside;
+  return std::clamp(kMedianNormToSigma * Median(std::move(norms)), kMinScalePx, kMaxScalePx);
 }
 
 std::vector<double> ResidualNorms(std::span<const PoseObservation> observations, const geometry::SE3& T_cam_world) {
@@ -42,19 +36,10 @@ std::vector<double> ResidualNorms(std::span<const PoseObservation> observations,
 
 }  // namespace
 
-void Register(Parameters& parameters, PoseOptions& options) {
-  parameters.Add("odometry.pose.iterations", &options.iterations, 1, 100, "Gauss-Newton iterations a frame");
-  parameters.Add("odometry.pose.inlier_px", &options.inlier_px, 0.1, 20,
-                 "residual in px below which a point is always an inlier");
-  parameters.Add("odometry.pose.min_inliers", &options.min_inliers, 4, 1000, "fewer inliers than this: lost");
-  parameters.Add("odometry.pose.min_inlier_ratio", &options.min_inlier_ratio, 0, 1,
-                 "smaller share of inliers than this: lost");
-}
-
 Eigen::Vector2d ReprojectionError(const geometry::SE3& T_cam_world, const PoseObservation& observation) {
   const Eigen::Vector3d p = T_cam_world * observation.point_world;
   if (!(p.z() > 0.0)) return Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
-  return observation.px_per_unit * (observation.x - p.head<2>() / p.z());
+  return observation.J_pixel_normalized * (observation.x - p.head<2>() / p.z());
 }
 
 Eigen::Matrix<double, 2, 6> ReprojectionJacobian(const geometry::SE3& T_cam_world, const PoseObservation& observation) {
@@ -62,44 +47,47 @@ Eigen::Matrix<double, 2, 6> ReprojectionJacobian(const geometry::SE3& T_cam_worl
   const double inverse_z = 1.0 / p.z();
   const double u = p.x() * inverse_z;
   const double v = p.y() * inverse_z;
-  // d(u, v) / d delta: -(1/z) [1 0 -u; 0 1 -v] [I, -p^], negated because e subtracts the projection.
+  // -(1/z) [1 0 -u; 0 1 -v] [I, -p^]; negative because the error subtracts the projection.
   Eigen::Matrix<double, 2, 6> jacobian;
   jacobian << -inverse_z, 0, u * inverse_z, u * v, -1.0 - u * u, v, 0, -inverse_z, v * inverse_z, 1.0 + v * v, -u * v,
       -u;
-  return observation.px_per_unit * jacobian;
+  return observation.J_pixel_normalized * jacobian;
+}
+
+geometry::Matrix6d PoseOptimizer::Minimize(std::span<const PoseObservation> observations, geometry::SE3* pose) const {
+  geometry::Matrix6d normal;
+  for (int iteration = 0; iteration < options_.iterations; ++iteration) {
+    const double scale = RobustScale(ResidualNorms(observations, *pose));
+    normal.setZero();
+    geometry::Vector6d gradient = geometry::Vector6d::Zero();
+    for (const auto& observation : observations) {
+      const Eigen::Vector2d error = ReprojectionError(*pose, observation);  // equation 1
+      if (!error.allFinite()) continue;
+      const double weight = iteration < kHuberIterations ? HuberWeight(error.norm(), kHuberWidth * scale)
+                                                         : TukeyWeight(error.norm(), kTukeyWidth * scale);
+      const Eigen::Matrix<double, 2, 6> jacobian = ReprojectionJacobian(*pose, observation);  // equation 2
+      normal += weight * jacobian.transpose() * jacobian;                                     // equation 5
+      gradient += weight * jacobian.transpose() * error;
+    }
+    normal.diagonal() *= 1.0 + kDamping;
+    const geometry::Vector6d step = -normal.ldlt().solve(gradient);
+    if (!step.allFinite()) break;
+    *pose = geometry::SE3::Exp(step) * *pose;
+    if (iteration > kHuberIterations && step.squaredNorm() < kMinStep2) break;
+  }
+  return normal;
 }
 
 PoseEstimate PoseOptimizer::Optimize(std::span<const PoseObservation> observations, const geometry::SE3& start) const {
   PoseEstimate result{.T_cam_world = start, .inliers = std::vector<bool>(observations.size())};
-  if (observations.size() < 3) return result;
-  geometry::Matrix6d normal;
-  for (int iteration = 0; iteration < options_.iterations; ++iteration) {
-    const double scale = RobustScale(ResidualNorms(observations, result.T_cam_world));
-    normal.setZero();
-    geometry::Vector6d gradient = geometry::Vector6d::Zero();
-    for (const auto& observation : observations) {
-      const Eigen::Vector2d error = ReprojectionError(result.T_cam_world, observation);
-      if (!error.allFinite()) continue;
-      const double weight = iteration < kHuberIterations ? HuberWeight(error.norm(), kHuber * scale)
-                                                         : TukeyWeight(error.norm(), kTukey * scale);
-      const Eigen::Matrix<double, 2, 6> jacobian = ReprojectionJacobian(result.T_cam_world, observation);
-      normal += weight * jacobian.transpose() * jacobian;
-      gradient += weight * jacobian.transpose() * error;
-    }
-    normal.diagonal() *= 1.0 + 1e-9;
-    const geometry::Vector6d step = -normal.ldlt().solve(gradient);
-    if (!step.allFinite()) break;
-    result.T_cam_world = geometry::SE3::Exp(step) * result.T_cam_world;
-    if (iteration > kHuberIterations && step.squaredNorm() < 1e-18) break;
-  }
+  if (observations.size() < kMinObservations) return result;
+  const geometry::Matrix6d normal = Minimize(observations, &result.T_cam_world);
   const auto norms = ResidualNorms(observations, result.T_cam_world);
   result.scale_px = RobustScale(norms);
   const double limit = std::clamp(kOutlierSigmas * result.scale_px, options_.inlier_px, 2.0 * options_.inlier_px);
   for (std::size_t i = 0; i < norms.size(); ++i) {
     result.inliers[i] = norms[i] < limit;
-    if (!result.inliers[i]) continue;
-    ++result.inlier_count;
-    result.cost += TukeyWeight(norms[i], kTukey * result.scale_px) * norms[i] * norms[i];
+    if (result.inliers[i]) ++result.inlier_count;
   }
   const Eigen::LDLT<geometry::Matrix6d> solver(normal);
   if (solver.info() == Eigen::Success && solver.vectorD().minCoeff() > 0.0) {

@@ -1,31 +1,26 @@
 #include "evo/odometry/resampling.hpp"
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <optional>
-#include <string>
-
-#include "evo/core/error.hpp"
+#include <vector>
 
 namespace evo::odometry {
 
 namespace {
 
-constexpr std::size_t kFitSightings = 4;  // fewer are interpolated instead
-constexpr double kOffSensorPx = 1.0;      // trackers may place a border feature a little outside
-constexpr double kMisfitShare = 0.02;     // of sightings that a calibration may fail to explain
+using events::TrackObservation;
 
-using Sighting = events::TrackObservation;
+constexpr std::size_t kMinFitObservations = 4;  // a line through fewer is hardly better than interpolation
 
-/// Value at `t` of the least-squares line through the sightings.
-Eigen::Vector2d FitLine(const Sighting* begin, const Sighting* end, TimeNs t) {
+/// The value at `t` of the least-squares line through the observations [begin, end), px.
+Eigen::Vector2d FitLine(const TrackObservation* begin, const TrackObservation* end, TimeNs t) {
   double sum_t = 0.0, sum_tt = 0.0;
   Eigen::Vector2d sum = Eigen::Vector2d::Zero(), sum_with_t = Eigen::Vector2d::Zero();
-  for (const Sighting* s = begin; s != end; ++s) {
-    const double dt = ToSeconds(s->t - t);
-    const Eigen::Vector2d position(s->x, s->y);
+  for (const TrackObservation* observation = begin; observation != end; ++observation) {
+    const double dt = ToSeconds(observation->t - t);
+    const Eigen::Vector2d position(observation->x, observation->y);
     sum_t += dt;
     sum_tt += dt * dt;
     sum += position;
@@ -37,99 +32,54 @@ Eigen::Vector2d FitLine(const Sighting* begin, const Sighting* end, TimeNs t) {
   return (sum_tt * sum - sum_t * sum_with_t) / determinant;
 }
 
-/// One track's position at `t`, its sightings in order of time; empty outside its life and in its gaps.
-std::optional<Eigen::Vector2d> PositionAt(const std::vector<Sighting>& track, TimeNs t,
-                                          const ResamplingOptions& options) {
-  const auto after = std::ranges::lower_bound(track, t, {}, &Sighting::t);
+/// A track's position at `t`, px; empty outside its life and in its gaps. `track` is in order of time.
+std::optional<Eigen::Vector2d> InterpolatePosition(const std::vector<TrackObservation>& track, TimeNs t,
+                                                   const ResamplingOptions& options) {
+  const auto after = std::ranges::lower_bound(track, t, {}, &TrackObservation::t);
   if (after == track.end() || (after == track.begin() && after->t != t)) return std::nullopt;
   const auto before = after->t == t ? after : after - 1;
   const TimeNs gap = after->t - before->t;
   if (gap > FromSeconds(options.max_gap_s)) return std::nullopt;
   const TimeNs window = FromSeconds(options.fit_window_s);
-  const auto begin = std::ranges::lower_bound(track, t - window, {}, &Sighting::t);
-  const auto end = std::ranges::upper_bound(track, t + window, {}, &Sighting::t);
-  if (static_cast<std::size_t>(end - begin) >= kFitSightings && begin->t < t && (end - 1)->t > t) {
+  const auto begin = std::ranges::lower_bound(track, t - window, {}, &TrackObservation::t);
+  const auto end = std::ranges::upper_bound(track, t + window, {}, &TrackObservation::t);
+  if (static_cast<std::size_t>(end - begin) >= kMinFitObservations && begin->t < t && (end - 1)->t > t) {
     return FitLine(&*begin, &*begin + (end - begin), t);
   }
   const double s = gap > 0 ? static_cast<double>(t - before->t) / static_cast<double>(gap) : 0.0;
   return Eigen::Vector2d((1.0 - s) * before->x + s * after->x, (1.0 - s) * before->y + s * after->y);
 }
 
-/// The lens's Jacobian at `x` on the plane z = 1, by central differences.
-Eigen::Matrix2d PxPerUnit(const geometry::Camera& camera, const Eigen::Vector2d& x) {
-  constexpr double kStep = 1e-4;
-  Eigen::Matrix2d jacobian;
-  for (int i = 0; i < 2; ++i) {
-    const Eigen::Vector2d d = kStep * Eigen::Vector2d::Unit(i);
-    jacobian.col(i) = (camera.Distort(x + d) - camera.Distort(x - d)) / (2.0 * kStep);
-  }
-  return jacobian;
-}
-
 }  // namespace
 
-void Register(Parameters& parameters, ResamplingOptions& options) {
-  parameters.Add("odometry.frame_interval_s", &options.frame_interval_s, 0.001, 1,
-                 "seconds between the frames made from asynchronous tracks");
-  parameters.Add("odometry.fit_window_s", &options.fit_window_s, 0, 0.5,
-                 "asynchronous tracks: a line is fitted to the sightings this near to a frame");
-  parameters.Add("odometry.max_gap_s", &options.max_gap_s, 0.001, 10,
-                 "asynchronous tracks: no interpolation across longer gaps");
-}
-
-bool AreSynchronous(const events::Tracks& tracks, int least) {
-  std::size_t shared = 0;
+bool AreSynchronous(const events::Tracks& tracks, int min_features) {
+  std::size_t in_frames = 0;
   for (auto begin = tracks.begin(); begin != tracks.end();) {
-    const auto end = std::find_if(begin, tracks.end(), [&](const Sighting& s) { return s.t != begin->t; });
-    if (end - begin >= least) shared += static_cast<std::size_t>(end - begin);
+    const auto end = std::find_if(begin, tracks.end(), [&](const TrackObservation& o) { return o.t != begin->t; });
+    if (end - begin >= min_features) in_frames += static_cast<std::size_t>(end - begin);
     begin = end;
   }
-  return 2 * shared > tracks.size();
+  return 2 * in_frames > tracks.size();
 }
 
 events::Tracks Resample(const events::Tracks& tracks, const ResamplingOptions& options) {
   events::Tracks resampled;
   if (tracks.empty()) return resampled;
-  std::map<std::int64_t, std::vector<Sighting>> by_id;
-  for (const auto& sighting : tracks) by_id[sighting.id].push_back(sighting);
+  std::map<std::int64_t, std::vector<TrackObservation>> by_id;
+  for (const auto& observation : tracks) by_id[observation.id].push_back(observation);
   const TimeNs start = tracks.front().t;
   const TimeNs interval = FromSeconds(options.frame_interval_s);
+  const auto next_frame = [&](TimeNs t) { return start + (t - start + interval - 1) / interval * interval; };
   for (const auto& [id, track] : by_id) {
-    const auto frame_from = [&](TimeNs t) { return start + (t - start + interval - 1) / interval * interval; };
-    for (TimeNs t = frame_from(track.front().t); t <= track.back().t;) {
-      const auto position = PositionAt(track, t, options);
+    for (TimeNs t = next_frame(track.front().t); t <= track.back().t;) {
+      const auto position = InterpolatePosition(track, t, options);
       if (position) resampled.push_back({id, t, position->x(), position->y()});
-      // A gap may hold more frames than can be counted through.
-      t = position ? t + interval : frame_from(std::ranges::lower_bound(track, t, {}, &Sighting::t)->t);
+      // A gap is skipped at once: it may last years.
+      t = position ? t + interval : next_frame(std::ranges::lower_bound(track, t, {}, &TrackObservation::t)->t);
     }
   }
-  std::ranges::stable_sort(resampled, {}, &Sighting::t);  // ids are in order already
+  std::ranges::stable_sort(resampled, {}, &TrackObservation::t);  // the ids are in order already
   return resampled;
-}
-
-std::vector<Frame> BuildFrames(const events::Tracks& tracks, const geometry::Camera& camera) {
-  std::vector<Frame> frames;
-  std::size_t misfits = 0;
-  for (const auto& sighting : tracks) {
-    if (frames.empty() || frames.back().t != sighting.t) frames.push_back({sighting.t, {}, {}});
-    auto& features = frames.back().features;
-    if (!features.empty() && features.back().track == sighting.id) continue;  // the same sighting twice
-    const Eigen::Vector2d pixel(sighting.x, sighting.y);
-    const auto x = camera.Contains(pixel, -kOffSensorPx) ? camera.Undistort(pixel) : std::nullopt;
-    if (x) {
-      features.push_back({sighting.id, *x, PxPerUnit(camera, *x)});
-    } else {
-      ++misfits;
-    }
-  }
-  if (static_cast<double>(misfits) > kMisfitShare * static_cast<double>(tracks.size())) {
-    throw Error(ErrorKind::kInput, std::to_string(misfits) + " of " + std::to_string(tracks.size()) +
-                                       " track positions lie off the calibrated " + std::to_string(camera.width()) +
-                                       " x " + std::to_string(camera.height()) +
-                                       " sensor or outside its lens model; tracks and calibration do not belong "
-                                       "together");
-  }
-  return frames;
 }
 
 }  // namespace evo::odometry

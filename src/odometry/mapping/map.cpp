@@ -1,4 +1,4 @@
-#include "evo/odometry/map.hpp"
+#include "odometry/mapping/map.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "evo/odometry/mapping_thread.hpp"
+#include "odometry/mapping/mapping_thread.hpp"
 
 #include <utility>
 

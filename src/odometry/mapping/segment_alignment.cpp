@@ -8,10 +8,10 @@ namespace evo::odometry {
 
 namespace {
 
-constexpr std::size_t kFewestPoints = 6;
-constexpr int kRounds = 3;
-constexpr double kKeptMedians = 3.0;          // residuals beyond so many medians are left out of the next round
-constexpr double kLargestDisagreement = 0.1;  // median residual over the points' spread
+constexpr std::size_t kMinPoints = 6;      // twice what a similarity needs
+constexpr int kRounds = 3;                 // of fits, each without the outliers of the one before
+constexpr double kOutlierMedians = 3.0;    // residual over the median residual
+constexpr double kMaxResidualRatio = 0.1;  // median residual over the points' spread; more: no common shape
 
 }  // namespace
 
@@ -25,7 +25,7 @@ std::optional<Similarity> AlignByPoints(const std::vector<Point>& points,
     to.push_back(found->second);
   }
   for (int round = 0; round < kRounds; ++round) {
-    if (from.size() < kFewestPoints) return std::nullopt;
+    if (from.size() < kMinPoints) return std::nullopt;
     const auto count = static_cast<Eigen::Index>(from.size());
     const Eigen::Map<const Eigen::Matrix3Xd> a(from.front().data(), 3, count), b(to.front().data(), 3, count);
     const Eigen::Matrix4d transform = Eigen::umeyama(a, b, true);
@@ -38,12 +38,12 @@ std::optional<Similarity> AlignByPoints(const std::vector<Point>& points,
     const double median = sorted[sorted.size() / 2];
     if (round == kRounds - 1) {
       const double spread = std::sqrt((b.colwise() - b.rowwise().mean()).colwise().squaredNorm().mean());
-      if (!(scale > 0.0) || !(median < kLargestDisagreement * spread)) return std::nullopt;
+      if (!(scale > 0.0) || !(median < kMaxResidualRatio * spread)) return std::nullopt;
       return Similarity{scale, geometry::SE3(Eigen::Quaterniond(rotation), transform.topRightCorner<3, 1>())};
     }
     std::size_t kept = 0;
     for (std::size_t i = 0; i < from.size(); ++i) {
-      if (residuals[static_cast<Eigen::Index>(i)] > kKeptMedians * median) continue;
+      if (residuals[static_cast<Eigen::Index>(i)] > kOutlierMedians * median) continue;
       from[kept] = from[i];
       to[kept++] = to[i];
     }

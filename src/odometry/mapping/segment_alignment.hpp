@@ -7,22 +7,22 @@
 #include <vector>
 
 #include "evo/geometry/se3.hpp"
-#include "evo/odometry/bootstrap.hpp"
+#include "odometry/frontend/bootstrap.hpp"
 
 namespace evo::odometry {
 
-/// p_world = T_world_local * (scale * p_local).
+/// A similarity: p_world = T_world_local * (scale * p_local).
 struct Similarity {
   double scale = 1.0;
   geometry::SE3 T_world_local;
 };
 
-/// The similarity that takes new points to the old points of the same tracks, in the least-squares sense with the worst
-/// left out. Empty with fewer than six common points or if they do not agree within a tenth of their spread.
+/// The least-squares similarity (S. Umeyama, PAMI 1991) from new points to the old points of the same tracks, without
+/// outliers. Empty if fewer than six tracks are common or the residuals exceed a tenth of the points' spread.
 std::optional<Similarity> AlignByPoints(const std::vector<Point>& points,
                                         const std::unordered_map<std::int64_t, Eigen::Vector3d>& old_points);
 
-/// Takes a new segment's poses and points to the world.
+/// Transforms the poses and points of a new segment to the world.
 void Transform(const Similarity& similarity, Bootstrap* bootstrap);
 
 }  // namespace evo::odometry

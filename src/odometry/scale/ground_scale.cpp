@@ -1,4 +1,4 @@
-#include "evo/odometry/ground_scale.hpp"
+#include "odometry/scale/ground_scale.hpp"
 
 #include <spdlog/spdlog.h>
 
@@ -9,179 +9,174 @@
 #include <utility>
 
 #include "evo/core/median.hpp"
-#include "odometry/scale/driven_path.hpp"
-#include "odometry/scale/ground_profile.hpp"
-#include "odometry/scale/track_points.hpp"
+#include "odometry/scale/height_profile.hpp"
+#include "odometry/scale/path_frame.hpp"
+#include "odometry/scale/triangulated_track.hpp"
 
 namespace evo::odometry {
 
 namespace {
 
-constexpr double kFirstWindow = 0.1;  // of the usual distance of the tracks, while the height is not known yet
-constexpr double kWindow = 3.0;       // heights to either side that the path is smoothed over
-constexpr double kReach = 40.0;       // heights between the camera that saw a track and its place by the path
-// Sideways over below, of tracks that may lie on the ground. Farther to the side there are kerbs and parked cars, and
-// near the image's border the tracks of a road drift outwards.
-constexpr double kCone = 0.8;
-// What the scale errs by besides, since tracks on a road err alike: on simulated drives lengths come out so much short.
-constexpr double kErrAlike = 0.005;
-constexpr double kShortestDrive = 10.0;  // heights, from where on a height that is not known is taken for constant
+constexpr double kInitialWindow = 0.1;  // over the typical distance of the tracks, before the height is known
+constexpr double kWindow = 3.0;         // heights to either side that the path is smoothed over
+constexpr double kMaxDistance = 40.0;   // heights of arc length from the camera that observes a track to the track
+// Lateral offset over depth below the path. Farther out there are kerbs and parked cars, and near the image's border
+// the tracks of a road drift outwards.
+constexpr double kMaxLateralRatio = 0.8;
+// Relative standard deviation that tracks on a road have in common: on simulated drives lengths come out so much short.
+constexpr double kCommonSigma = 0.005;
+constexpr double kMinPathHeights = 10.0;  // length of the path from which on an unknown height is taken for constant
 
 /// All poses of a run in order of time.
-struct PoseList {
-  std::vector<Eigen::Vector3d> positions;
-  std::vector<Eigen::Vector3d> down;  // the camera's y axis
-  std::vector<std::size_t> begins;    // of the segments
+struct CameraPath {
+  std::vector<Eigen::Vector3d> positions;   // world
+  std::vector<Eigen::Vector3d> down;        // the camera's y axis, world
+  std::vector<std::size_t> segment_begins;  // first pose of every segment
 };
 
-PoseList ListPoses(const std::vector<Segment>& segments) {
-  PoseList list;
+CameraPath ListPoses(const std::vector<Segment>& segments) {
+  CameraPath path;
   for (const Segment& segment : segments) {
-    list.begins.push_back(list.positions.size());
-    for (const geometry::SE3& T_cam_world : segment.T_cam_world) {
-      const geometry::SE3 T_world_cam = T_cam_world.Inverse();
-      list.positions.push_back(T_world_cam.translation());
-      list.down.push_back(T_world_cam.rotation() * Eigen::Vector3d::UnitY());
+    path.segment_begins.push_back(path.positions.size());
+    for (const SegmentPose& pose : segment.poses) {
+      const geometry::SE3 T_world_cam = pose.T_cam_world.Inverse();
+      path.positions.push_back(T_world_cam.translation());
+      path.down.push_back(T_world_cam.rotation() * Eigen::Vector3d::UnitY());
     }
   }
-  return list;
+  return path;
 }
 
-double UsualDistance(const std::vector<TrackPoint>& points, const PoseList& poses) {
+double MedianDistance(const std::vector<TriangulatedTrack>& tracks, const CameraPath& path) {
   std::vector<double> distances;
-  distances.reserve(points.size());
-  for (const auto& point : points) distances.push_back((point.position - poses.positions[point.pose]).norm());
+  distances.reserve(tracks.size());
+  for (const auto& track : tracks) distances.push_back((track.position - path.positions[track.last_pose]).norm());
   return Median(std::move(distances));
 }
 
-std::vector<GroundSighting> FindBelow(const DrivenPath& path, const std::vector<TrackPoint>& points, double reach) {
-  std::vector<GroundSighting> sightings;
-  for (const TrackPoint& point : points) {
-    const auto place = path.Locate(point.position, point.pose, reach);
-    if (!place || !(place->below > 0.0) || std::abs(place->sideways) > kCone * place->below) continue;
+/// The tracks below the path.
+std::vector<GroundObservation> FindGroundObservations(const PathFrame& path_frame,
+                                                      const std::vector<TriangulatedTrack>& tracks,
+                                                      double max_distance) {
+  std::vector<GroundObservation> observations;
+  for (const TriangulatedTrack& track : tracks) {
+    const auto place = path_frame.Locate(track.position, track.last_pose, max_distance);
+    if (!place || !(place->below > 0.0) || std::abs(place->right) > kMaxLateralRatio * place->below) continue;
     const double inverse = 1.0 / place->below;
-    const double sigma = std::sqrt(place->down.dot(point.covariance * place->down));
-    sightings.push_back({place->along, inverse, sigma * inverse * inverse, place->sideways * inverse});
+    const double sigma = std::sqrt(place->down.dot(track.covariance * place->down));
+    observations.push_back({place->arc_length, inverse, sigma * inverse * inverse, place->right * inverse});
   }
-  return sightings;
+  return observations;
 }
 
-/// One over the height at every pose.
-struct PoseHeights {
-  std::vector<double> inverse;
-  GroundProfile profile;
+struct PathHeights {
+  std::vector<double> inverse_heights;  // at every pose
+  HeightProfile profile;
 };
 
-/// Twice: the path has to be smoothed over some heights, so these have to be known roughly first.
-std::optional<PoseHeights> MeasureHeights(const GroundOptions& options, const std::vector<TrackPoint>& points,
-                                          const PoseList& poses) {
-  double window = kFirstWindow * UsualDistance(points, poses);
-  PoseHeights heights;
+/// In two rounds: the path is smoothed over a few heights, which have to be known roughly for that.
+std::optional<PathHeights> MeasureHeights(const GroundOptions& options, const std::vector<TriangulatedTrack>& tracks,
+                                          const CameraPath& path) {
+  double window = kInitialWindow * MedianDistance(tracks, path);
+  PathHeights heights;
   for (int round = 0; round < 2; ++round) {
     if (!(window > 0.0)) return std::nullopt;
-    const DrivenPath path(poses.positions, poses.down, window);
-    GroundProfileOptions profile_options{options.drift, path.length(), {}};
-    for (std::size_t i = 1; i < poses.begins.size(); ++i) {
-      profile_options.breaks.push_back(path.Along(poses.begins[i]));
+    const PathFrame path_frame(path.positions, path.down, window);
+    HeightProfileOptions profile_options{options.scale_drift_ratio, path_frame.length(), {}};
+    for (std::size_t i = 1; i < path.segment_begins.size(); ++i) {
+      profile_options.scale_breaks.push_back(path_frame.arc_length(path.segment_begins[i]));
     }
-    auto profile = FitGround(profile_options, FindBelow(path, points, kReach / kWindow * window));
+    const auto observations = FindGroundObservations(path_frame, tracks, kMaxDistance / kWindow * window);
+    auto profile = FitHeightProfile(profile_options, observations);
     if (!profile) return std::nullopt;
     heights.profile = std::move(*profile);
-    heights.inverse.clear();
-    for (std::size_t i = 0; i < poses.positions.size(); ++i) {
-      heights.inverse.push_back(heights.profile.InverseHeight(path.Along(i)));
+    heights.inverse_heights.clear();
+    for (std::size_t i = 0; i < path.positions.size(); ++i) {
+      heights.inverse_heights.push_back(heights.profile.InverseHeight(path_frame.arc_length(i)));
     }
-    window = kWindow / heights.profile.InverseHeight(0.5 * path.length());
+    window = kWindow / heights.profile.InverseHeight(0.5 * path_frame.length());
   }
   return heights;
 }
 
-/// Moves each point with the nearest of the poses that see its track; `scales` are those of the segment's poses.
+/// Moves each point with the nearest of the poses that observe its track; `old_poses` and `scales` are of all poses of
+/// the segment.
 void MovePoints(const std::vector<Frame>& frames, const std::vector<geometry::SE3>& old_poses,
                 const std::vector<double>& scales, Segment* segment) {
-  std::unordered_map<std::int64_t, std::vector<std::size_t>> seen_in;
-  for (const Point& point : segment->points) seen_in[point.track];
-  for (std::size_t i = 0; i < segment->frames.size(); ++i) {
-    for (const Feature& feature : frames[segment->frames[i]].features) {
-      const auto found = seen_in.find(feature.track);
-      if (found != seen_in.end()) found->second.push_back(i);
+  std::unordered_map<std::int64_t, std::vector<std::size_t>> observing_poses;
+  for (const Point& point : segment->points) observing_poses[point.track];
+  for (std::size_t i = 0; i < segment->poses.size(); ++i) {
+    for (const Feature& feature : frames[segment->poses[i].frame].features) {
+      const auto found = observing_poses.find(feature.track);
+      if (found != observing_poses.end()) found->second.push_back(i);
     }
   }
   for (Point& point : segment->points) {
-    auto& places = seen_in[point.track];
-    if (places.empty()) places.push_back(0);
+    auto& poses = observing_poses[point.track];
+    if (poses.empty()) poses.push_back(0);
     const auto distance = [&](std::size_t i) { return (old_poses[i] * point.position).norm(); };
-    const std::size_t nearest = *std::ranges::min_element(places, {}, distance);
+    const std::size_t nearest = *std::ranges::min_element(poses, {}, distance);
     point.position =
-        segment->T_cam_world[nearest].Inverse() * (scales[nearest] * (old_poses[nearest] * point.position));
+        segment->poses[nearest].T_cam_world.Inverse() * (scales[nearest] * (old_poses[nearest] * point.position));
   }
 }
 
-/// Every step from pose to pose with the scale that holds there, see PoseUncertainty::HoldScale; `reach` is in the new
-/// unit.
-void Rescale(const std::vector<double>& scales, double error, double reach, const std::vector<Frame>& frames,
+std::vector<geometry::SE3> CollectPoses(const Segment& segment) {
+  std::vector<geometry::SE3> T_cam_world;
+  for (const SegmentPose& pose : segment.poses) T_cam_world.push_back(pose.T_cam_world);
+  return T_cam_world;
+}
+
+/// Multiplies every step from pose to pose by the scale there; `scales` are of all poses of the run, `information` is
+/// in the new unit.
+void Rescale(const std::vector<double>& scales, const ScaleInformation& information, const std::vector<Frame>& frames,
              std::vector<Segment>* segments) {
   std::size_t pose = 0;
   Eigen::Vector3d old_position = Eigen::Vector3d::Zero();
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   for (Segment& segment : *segments) {
-    const std::vector<geometry::SE3> old_poses = segment.T_cam_world;
-    const auto begin = scales.begin() + static_cast<std::ptrdiff_t>(pose);
-    for (std::size_t i = 0; i < segment.besides.size(); ++i) {
-      const double scale = begin[static_cast<std::ptrdiff_t>(i)];
-      segment.besides[i].topRows<3>() *= scale;
-      segment.besides[i].leftCols<3>() *= scale;
-    }
-    for (geometry::SE3& T_cam_world : segment.T_cam_world) {
-      const geometry::SE3 T_world_cam = T_cam_world.Inverse();
+    const std::vector<geometry::SE3> old_poses = CollectPoses(segment);
+    std::vector<double> segment_scales;
+    for (SegmentPose& segment_pose : segment.poses) {
+      const geometry::SE3 T_world_cam = segment_pose.T_cam_world.Inverse();
       const double scale = 0.5 * (scales[pose == 0 ? 0 : pose - 1] + scales[pose]);
       position += scale * (T_world_cam.translation() - old_position);
       old_position = T_world_cam.translation();
-      T_cam_world = geometry::SE3(T_world_cam.rotation(), position).Inverse();
+      segment_pose.T_cam_world = geometry::SE3(T_world_cam.rotation(), position).Inverse();
+      segment_scales.push_back(scales[pose]);
       ++pose;
     }
-    std::vector<geometry::SE3> adjusted;
-    for (const std::size_t i : segment.adjusted) adjusted.push_back(segment.T_cam_world[i]);
-    segment.uncertainty.HoldScale(adjusted, error, reach);
-    MovePoints(frames, old_poses, {begin, scales.begin() + static_cast<std::ptrdiff_t>(pose)}, &segment);
+    segment.uncertainty.ApplyScale(information, segment_scales, CollectPoses(segment));
+    MovePoints(frames, old_poses, segment_scales, &segment);
   }
 }
 
 }  // namespace
 
-void Register(Parameters& parameters, GroundOptions& options) {
-  parameters.Add("odometry.ground.hold_height", &options.hold_height,
-                 "hold the height of the camera above the road, where it drives over one: no drift of the scale");
-  parameters.Add(
-      "odometry.ground.camera_height_m", &options.camera_height_m, 0, 100,
-      "height of the camera above the road (m), held and the scale taken from it; 0: the scale is arbitrary");
-  parameters.Add("odometry.ground.drift", &options.drift, 1e-6, 1,
-                 "relative change of the scale over a way of one camera height");
-}
-
 GroundScale ScaleByGround(const GroundOptions& options, const std::vector<Frame>& frames,
                           std::vector<Segment>* segments) {
   const auto heights = MeasureHeights(options, TriangulateTracks(frames, *segments), ListPoses(*segments));
-  const bool known = options.camera_height_m > 0.0;
-  if (!heights || (!known && heights->profile.heights < kShortestDrive)) {
-    spdlog::log(known ? spdlog::level::warn : spdlog::level::info,
+  const bool is_metric = options.camera_height_m > 0.0;
+  if (!heights || (!is_metric && heights->profile.path_length_in_heights < kMinPathHeights)) {
+    spdlog::log(is_metric ? spdlog::level::warn : spdlog::level::info,
                 "odometry: no ground found below the path: the scale stays arbitrary and may drift");
     return {};
   }
-  const double height = known ? options.camera_height_m : 1.0 / Median(heights->inverse);
+  const double height = is_metric ? options.camera_height_m : 1.0 / Median(heights->inverse_heights);
   std::vector<double> scales;
-  for (const double inverse : heights->inverse) scales.push_back(height * inverse);
-  const GroundProfile& profile = heights->profile;
-  // A random walk that is smoothed to an error of so much errs alike over so long a way.
-  const double reach = height * std::max(2.0 * kWindow, 2.0 * std::pow(profile.error / options.drift, 2));
-  Rescale(scales, std::hypot(profile.error, kErrAlike), reach, frames, segments);
-  const auto [lowest, highest] = std::ranges::minmax(scales);
-  const GroundScale scale{true, known, profile.tracks, profile.covered, profile.error, lowest, highest};
+  for (const double inverse_height : heights->inverse_heights) scales.push_back(height * inverse_height);
+  const HeightProfileQuality& quality = heights->profile.quality;
+  // A random walk that is smoothed to this standard deviation has errors correlated over this many heights.
+  const double correlation_heights =
+      std::max(2.0 * kWindow, 2.0 * std::pow(quality.relative_sigma / options.scale_drift_ratio, 2));
+  Rescale(scales, {std::hypot(quality.relative_sigma, kCommonSigma), height * correlation_heights}, frames, segments);
+  const auto [min_scale, max_scale] = std::ranges::minmax(scales);
   spdlog::info(
       "odometry: scale from the ground: {:.4g} to {:.4g} {} a unit along the path, {} tracks, {:.0f} % of the path "
       "covered, uncertain by {:.2f} %",
-      scale.lowest, scale.highest, known ? "m" : "new units", scale.tracks, 100.0 * scale.covered, 100.0 * scale.error);
-  return scale;
+      min_scale, max_scale, is_metric ? "m" : "new units", quality.inliers, 100.0 * quality.covered_ratio,
+      100.0 * quality.relative_sigma);
+  return {true, is_metric, quality.inliers, quality.covered_ratio, quality.relative_sigma, min_scale, max_scale};
 }
 
 }  // namespace evo::odometry
