@@ -34,7 +34,9 @@ def check(root: Path) -> list[str]:
 def _own_header_later(source: Source, by_path: dict[str, Source]) -> list[str]:
     if source.path.suffix != ".cpp" or source.is_test:
         return []
-    own = [i for i in source.includes() if i.module == source.module and Path(i.path).stem == source.path.stem]
+    same = source.name.removeprefix("src/").removesuffix(".cpp") + ".hpp"
+    public = f"evo/{source.module}/{source.path.stem}.hpp"
+    own = [i for i in source.includes() if i.path in (same, public)]
     first = next((line for line in source.text().splitlines() if line.startswith("#include")), "")
     return [f'{source.name}:{i.line}: its own header "{i.path}" should come first' for i in own if i.path not in first]
 

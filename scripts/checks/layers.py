@@ -8,6 +8,8 @@ from pathlib import Path
 from .source import MODULES, Source, sources
 
 _NAMESPACE = re.compile(r"^namespace (evo[\w:]*) \{", re.M)
+# A module may declare a class of core without its header.
+_FORWARD_DECLARATION = re.compile(r"^namespace evo \{\s*(?:(?:class|struct) \w+;\s*)+\}.*$", re.M)
 
 
 def check(root: Path) -> list[str]:
@@ -43,7 +45,7 @@ def _wrong_includes(source: Source) -> list[str]:
 
 def _wrong_namespaces(source: Source) -> list[str]:
     wanted = "evo" if source.module == "core" else f"evo::{source.module}"
-    found = _NAMESPACE.findall(source.text())
+    found = _NAMESPACE.findall(_FORWARD_DECLARATION.sub("", source.text()))
     wrong = [name for name in found if name != wanted and not name.startswith(wanted + "::")]
     if source.module == "core":
         wrong = [name for name in found if name.split("::")[1:2] and name.split("::")[1] in MODULES]

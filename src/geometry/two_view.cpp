@@ -47,22 +47,22 @@ bool InFrontOfBoth(const Correspondence& pair, const SE3& T_2_1) {
 
 /// The motion, of the four, with the most points in front of both cameras.
 SE3 ChooseByCheirality(const Matrix3d& essential, std::span<const Correspondence> pairs) {
-  SE3 best;
+  SE3 T_2_1_best;
   std::ptrdiff_t max_count = -1;
-  for (const SE3& motion : DecomposeEssential(essential)) {
-    const auto count = std::ranges::count_if(pairs, [&](const auto& pair) { return InFrontOfBoth(pair, motion); });
+  for (const SE3& T_2_1 : DecomposeEssential(essential)) {
+    const auto count = std::ranges::count_if(pairs, [&](const auto& pair) { return InFrontOfBoth(pair, T_2_1); });
     if (count > max_count) {
       max_count = count;
-      best = motion;
+      T_2_1_best = T_2_1;
     }
   }
-  return best;
+  return T_2_1_best;
 }
 
 /// The derivatives of E by the five parameters: left rotations about x, y, z and translations along two tangents.
-std::array<Matrix3d, 5> EssentialDerivatives(const SE3& pose, const Vector3d& tangent1, const Vector3d& tangent2) {
-  const Matrix3d rotation = pose.RotationMatrix();
-  const Matrix3d hat = so3::Hat(pose.translation());
+std::array<Matrix3d, 5> EssentialDerivatives(const SE3& T_2_1, const Vector3d& tangent1, const Vector3d& tangent2) {
+  const Matrix3d rotation = T_2_1.RotationMatrix();
+  const Matrix3d hat = so3::Hat(T_2_1.translation());
   return {hat * so3::Hat(Vector3d::UnitX()) * rotation, hat * so3::Hat(Vector3d::UnitY()) * rotation,
           hat * so3::Hat(Vector3d::UnitZ()) * rotation, so3::Hat(tangent1) * rotation, so3::Hat(tangent2) * rotation};
 }
@@ -127,8 +127,8 @@ std::vector<Correspondence> Select(std::span<const Correspondence> pairs, const 
 /// Refines a motion on its inliers as long as its cost falls.
 Candidate Polish(std::span<const Correspondence> pairs, Candidate best, double max_error) {
   for (int round = 0; round < kMaxPolishRounds && best.pose.inlier_count >= static_cast<int>(kSampleSize); ++round) {
-    const SE3 refined = RefineRelativePose(Select(pairs, best.pose.inliers), best.pose.T_2_1);
-    Candidate candidate = ScoreMotion(pairs, refined, max_error);
+    const SE3 T_2_1_refined = RefineRelativePose(Select(pairs, best.pose.inliers), best.pose.T_2_1);
+    Candidate candidate = ScoreMotion(pairs, T_2_1_refined, max_error);
     if (!(candidate.cost < best.cost)) break;
     best = std::move(candidate);
   }
@@ -190,14 +190,14 @@ double SampsonError(const Matrix3d& essential, const Correspondence& pair) {
   return pair.x2.homogeneous().dot(line2) / std::sqrt(std::max(gradient2, 1e-24));
 }
 
-SE3 RefineRelativePose(std::span<const Correspondence> pairs, const SE3& T_2_1) {
-  SE3 pose(T_2_1.rotation(), T_2_1.translation().normalized());
+SE3 RefineRelativePose(std::span<const Correspondence> pairs, const SE3& T_2_1_initial) {
+  SE3 T_2_1(T_2_1_initial.rotation(), T_2_1_initial.translation().normalized());
   for (int i = 0; i < kRefineIterations; ++i) {
-    const Vector3d t = pose.translation();
+    const Vector3d t = T_2_1.translation();
     const Vector3d tangent1 = t.unitOrthogonal();
     const Vector3d tangent2 = t.cross(tangent1);
-    const Matrix3d essential = EssentialMatrix(pose);
-    const auto derivatives = EssentialDerivatives(pose, tangent1, tangent2);
+    const Matrix3d essential = EssentialMatrix(T_2_1);
+    const auto derivatives = EssentialDerivatives(T_2_1, tangent1, tangent2);
     Eigen::Matrix<double, 5, 5> normal = Eigen::Matrix<double, 5, 5>::Zero();
     Eigen::Matrix<double, 5, 1> gradient = Eigen::Matrix<double, 5, 1>::Zero();
     for (const auto& pair : pairs) {
@@ -209,10 +209,11 @@ SE3 RefineRelativePose(std::span<const Correspondence> pairs, const SE3& T_2_1) 
     normal.diagonal().array() += 1e-9 * normal.diagonal().maxCoeff();
     const Eigen::Matrix<double, 5, 1> step = -normal.ldlt().solve(gradient);
     if (!step.allFinite()) break;
-    pose = SE3(so3::Exp(step.head<3>()) * pose.rotation(), (t + step[3] * tangent1 + step[4] * tangent2).normalized());
+    T_2_1 =
+        SE3(so3::Exp(step.head<3>()) * T_2_1.rotation(), (t + step[3] * tangent1 + step[4] * tangent2).normalized());
     if (step.norm() < 1e-10) break;
   }
-  return pose;
+  return T_2_1;
 }
 
 std::optional<RelativePose> EstimateRelativePose(std::span<const Correspondence> pairs,
@@ -225,8 +226,8 @@ std::optional<RelativePose> EstimateRelativePose(std::span<const Correspondence>
   std::vector<Correspondence> sample(kSampleSize);
   Candidate best;
   best.cost = std::numeric_limits<double>::infinity();
-  const auto consider = [&](const SE3& motion) {
-    const Candidate candidate = ScoreMotion(pairs, motion, options.max_sampson_error);
+  const auto consider = [&](const SE3& T_2_1) {
+    const Candidate candidate = ScoreMotion(pairs, T_2_1, options.max_sampson_error);
     // A sample's motion is far from the best for its inliers, so costs are compared after the refinement.
     if (!(candidate.cost < kPolishCostRatio * best.cost)) return;
     Candidate polished = Polish(pairs, candidate, options.max_sampson_error);

@@ -52,19 +52,19 @@ geometry::SE3 EndCorrection(const std::vector<SegmentPose>& old_poses, const std
 /// Refines every segment and moves those after it with its end.
 void RefineSegments(const FinalRefinementOptions& options, const std::vector<Frame>& frames,
                     const std::function<void(double)>& progress, ThreadPool* pool, std::vector<Segment>* segments) {
-  geometry::SE3 T_new_old;  // of the world
+  geometry::SE3 T_new_world;  // of the world
   int begin_frame = 0;
   const double count = static_cast<double>(segments->size());
   for (std::size_t i = 0; i < segments->size(); ++i) {
     Segment& segment = (*segments)[i];
-    for (SegmentPose& pose : segment.poses) pose.T_cam_world = pose.T_cam_world * T_new_old.Inverse();
-    for (Point& point : segment.points) point.position = T_new_old * point.position;
+    for (SegmentPose& pose : segment.poses) pose.T_cam_world = pose.T_cam_world * T_new_world.Inverse();
+    for (Point& point : segment.points) point.position = T_new_world * point.position;
     const std::vector<SegmentPose> old_poses = segment.poses;
     const int end_frame =
         i + 1 < segments->size() ? (*segments)[i + 1].poses.front().frame : static_cast<int>(frames.size());
     const auto segment_progress = [&](double ratio) { progress((static_cast<double>(i) + ratio) / count); };
     RefineSegment(options, frames, begin_frame, end_frame, segment_progress, pool, &segment);
-    T_new_old = EndCorrection(old_poses, segment.poses) * T_new_old;
+    T_new_world = EndCorrection(old_poses, segment.poses) * T_new_world;
     begin_frame = segment.poses.back().frame + 1;
   }
 }

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <random>
 
-#include "odometry/bundle/bundle_adjuster.hpp"
+#include "odometry/bundle/bundle_problem.hpp"
 
 namespace evo::odometry::testing {
 

@@ -7,7 +7,6 @@
 #include "app/run/stage_run.hpp"
 #include "evo/events/tracks.hpp"
 #include "evo/geometry/camera.hpp"
-#include "evo/odometry/odometry.hpp"
 
 namespace evo::app {
 

@@ -24,14 +24,14 @@ geometry::SE3 FitFirstPose(const PosePair& first) {
 }
 
 Similarity FitOriginAndScale(std::span<const PosePair> pairs, const std::string& name) {
-  const geometry::SE3& first_truth = pairs.front().T_world_cam_truth;
+  const geometry::SE3& T_world_cam_first = pairs.front().T_world_cam_truth;
   const geometry::SE3 T_truth_estimate = FitFirstPose(pairs.front());
   double cross = 0.0;
   double square = 0.0;
   for (const auto& pair : pairs) {
     const Eigen::Vector3d moved =
-        T_truth_estimate * pair.T_world_cam_estimate.translation() - first_truth.translation();
-    cross += moved.dot(pair.T_world_cam_truth.translation() - first_truth.translation());
+        T_truth_estimate * pair.T_world_cam_estimate.translation() - T_world_cam_first.translation();
+    cross += moved.dot(pair.T_world_cam_truth.translation() - T_world_cam_first.translation());
     square += moved.squaredNorm();
   }
   if (square / static_cast<double>(pairs.size()) <= kEpsilon || cross <= 0.0) {
@@ -40,7 +40,7 @@ Similarity FitOriginAndScale(std::span<const PosePair> pairs, const std::string&
   }
   const double scale = cross / square;
   // The scaling about the first true position as a similarity about the world's origin.
-  const Eigen::Vector3d origin = first_truth.translation();
+  const Eigen::Vector3d origin = T_world_cam_first.translation();
   return {scale,
           geometry::SE3(T_truth_estimate.rotation(), scale * (T_truth_estimate.translation() - origin) + origin)};
 }

@@ -128,8 +128,8 @@ void ApplyStep(const Eigen::VectorXd& pose_steps, const std::vector<Eigen::Vecto
     point.inverse_depth.z() = std::max(point.inverse_depth.z(), 0.0);  // at most infinity, beyond it depths reverse
   }
   for (Eigen::Index i = 0; i < pose_steps.size() / 6; ++i) {
-    geometry::SE3& pose = problem->T_cam_world[static_cast<std::size_t>(problem->fixed_frames + i)];
-    pose = geometry::SE3::Exp(pose_steps.segment<6>(Eigen::Index{6} * i)) * pose;
+    geometry::SE3& T_cam_world = problem->T_cam_world[static_cast<std::size_t>(problem->fixed_frames + i)];
+    T_cam_world = geometry::SE3::Exp(pose_steps.segment<6>(Eigen::Index{6} * i)) * T_cam_world;
   }
 }
 

@@ -23,23 +23,23 @@ void PoseCompleter::AddAdjusted(int frame, const geometry::SE3& T_cam_world) {
   if (estimate.inlier_count > 0) rotation_sigmas_.push_back(RotationSigma(estimate));
 }
 
-bool PoseCompleter::AddEstimated(int frame, const geometry::SE3& initial, double min_inlier_ratio) {
-  const PoseEstimate estimate = points_.EstimatePose(frames_, frame, initial);
+bool PoseCompleter::AddEstimated(int frame, const geometry::SE3& T_cam_world_initial, double min_inlier_ratio) {
+  const PoseEstimate estimate = points_.EstimatePose(frames_, frame, T_cam_world_initial);
   if (!points_.Accepts(estimate, min_inlier_ratio)) return false;
   poses_[frame] = {{frame, estimate.T_cam_world, estimate.inlier_count}, variance_inflation_ * estimate.covariance};
   rotation_sigmas_.push_back(RotationSigma(estimate));
   return true;
 }
 
-void PoseCompleter::Extend(int frame, int end, int direction, geometry::SE3 initial) {
+void PoseCompleter::Extend(int frame, int end, int direction, geometry::SE3 T_cam_world_initial) {
   const double typical_sigma = Median(rotation_sigmas_);
   for (; frame != end; frame += direction) {
-    if (!AddEstimated(frame, initial, PoseOptions().min_inlier_ratio)) return;
+    if (!AddEstimated(frame, T_cam_world_initial, PoseOptions().min_inlier_ratio)) return;
     if (rotation_sigmas_.back() > kMaxUncertaintyRatio * typical_sigma) {
       poses_.erase(frame);
       return;
     }
-    initial = poses_.at(frame).pose.T_cam_world;
+    T_cam_world_initial = poses_.at(frame).pose.T_cam_world;
   }
 }
 

@@ -24,12 +24,12 @@ class PoseCompleter {
   void AddAdjusted(int frame, const geometry::SE3& T_cam_world);
 
   /// Estimates and adds the pose of a frame from that of a frame nearby; false if too few points agree.
-  bool AddEstimated(int frame, const geometry::SE3& initial, double min_inlier_ratio);
+  bool AddEstimated(int frame, const geometry::SE3& T_cam_world_initial, double min_inlier_ratio);
 
   /// Adds the poses of the frames from `frame` up to but without `end` in steps of `direction`, until one cannot be
   /// estimated or is far more uncertain than the typical one: a first pose estimated from a few young tracks would
   /// rotate the whole path.
-  void Extend(int frame, int end, int direction, geometry::SE3 initial);
+  void Extend(int frame, int end, int direction, geometry::SE3 T_cam_world_initial);
 
   /// In order of time.
   std::vector<SegmentPose> Poses() const;

@@ -39,7 +39,7 @@ RefinedPoints::RefinedPoints(const SegmentBundle& bundle, double drift_variance_
 }
 
 PoseEstimate RefinedPoints::EstimatePose(const std::vector<Frame>& frames, int frame,
-                                         const geometry::SE3& initial) const {
+                                         const geometry::SE3& T_cam_world_initial) const {
   std::vector<PoseObservation> observations;
   for (const Feature& feature : frames[frame].features) {
     const auto found = pieces_.find(feature.track);
@@ -49,7 +49,7 @@ PoseEstimate RefinedPoints::EstimatePose(const std::vector<Frame>& frames, int f
     if (piece != found->second.begin()) --piece;
     observations.push_back({piece->position, feature.x - Drift(*piece, frame), feature.J_pixel_normalized});
   }
-  return optimizer_.Optimize(observations, initial);
+  return optimizer_.Optimize(observations, T_cam_world_initial);
 }
 
 Eigen::Vector2d RefinedPoints::Drift(const Piece& piece, int frame) {

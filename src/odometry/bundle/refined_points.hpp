@@ -26,7 +26,8 @@ class RefinedPoints {
   const std::vector<Point>& points() const { return points_; }
 
   /// The pose of a frame of the run from its features, corrected by their tracks' drift.
-  PoseEstimate EstimatePose(const std::vector<Frame>& frames, int frame, const geometry::SE3& initial) const;
+  PoseEstimate EstimatePose(const std::vector<Frame>& frames, int frame,
+                            const geometry::SE3& T_cam_world_initial) const;
   bool Accepts(const PoseEstimate& estimate, double min_inlier_ratio) const {
     return optimizer_.Accepts(estimate, min_inlier_ratio);
   }

@@ -213,8 +213,8 @@ bool Bootstrapper::RefineMap(Bootstrap* bootstrap) const {
   }
   bootstrap->points = std::move(points);
   for (std::size_t k = 0; k < chosen.size(); ++k) {
-    const geometry::SE3& pose = problem.T_cam_world[k];
-    bootstrap->T_cam_world[chosen[k]] = geometry::SE3(pose.rotation(), scale * pose.translation());
+    const geometry::SE3& T_cam_world = problem.T_cam_world[k];
+    bootstrap->T_cam_world[chosen[k]] = geometry::SE3(T_cam_world.rotation(), scale * T_cam_world.translation());
   }
   return true;
 }

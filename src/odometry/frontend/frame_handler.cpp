@@ -96,20 +96,21 @@ std::optional<FrameHandler::LastMotion> FrameHandler::MeasureLastMotion() const 
 }
 
 geometry::SE3 FrameHandler::PredictPose(TimeNs t) const {
-  const geometry::SE3 last = Pose(last_tracked_);
+  const geometry::SE3 T_cam_world_last = Pose(last_tracked_);
   const auto motion = MeasureLastMotion();
   const double ahead_s = ToSeconds(t - frames_[last_tracked_].t);
-  return motion ? geometry::SE3::Exp(ahead_s / motion->interval_s * motion->twist) * last : last;
+  return motion ? geometry::SE3::Exp(ahead_s / motion->interval_s * motion->twist) * T_cam_world_last
+                : T_cam_world_last;
 }
 
 bool FrameHandler::TrackFrame(int index) {
   const Frame& frame = frames_[index];
   const LandmarkMatches matches = MatchLandmarks(frame);
-  const geometry::SE3 last = Pose(last_tracked_);
+  const geometry::SE3 T_cam_world_last = Pose(last_tracked_);
   const bool velocity_is_recent = ToSeconds(frame.t - frames_[last_tracked_].t) <= kMaxPredictionSeconds;
-  PoseEstimate estimate =
-      optimizer_.Optimize(matches.observations, velocity_is_recent ? PredictPose(frame.t) : last);  // equations 1-5
-  if (!optimizer_.Accepts(estimate)) estimate = optimizer_.Optimize(matches.observations, last);
+  PoseEstimate estimate = optimizer_.Optimize(
+      matches.observations, velocity_is_recent ? PredictPose(frame.t) : T_cam_world_last);  // equations 1-5
+  if (!optimizer_.Accepts(estimate)) estimate = optimizer_.Optimize(matches.observations, T_cam_world_last);
   if (!optimizer_.Accepts(estimate)) return false;
   FrameMessage message;
   for (std::size_t i = 0; i < matches.tracks.size(); ++i) {
@@ -151,14 +152,14 @@ bool FrameHandler::IsKeyFrame(int index, const geometry::SE3& T_cam_world, const
   if (static_cast<double>(shared.size()) < options.min_shared_ratio * static_cast<double>(frame.features.size())) {
     return true;
   }
-  const geometry::SE3 motion = T_cam_world * key_poses_.back().Inverse();
-  if (geometry::so3::Log(motion.rotation()).norm() > options.rotation_deg * std::numbers::pi / 180.0) return true;
+  const geometry::SE3 T_cam_key = T_cam_world * key_poses_.back().Inverse();
+  if (geometry::so3::Log(T_cam_key.rotation()).norm() > options.rotation_deg * std::numbers::pi / 180.0) return true;
   std::vector<double> depths;
   for (const auto& observation : matches.observations) {
     const double z = (T_cam_world * observation.point_world).z();
     if (z > 0.0) depths.push_back(z);
   }
-  return motion.translation().norm() > options.translation * MeasureSceneDepth(std::move(depths)).median;
+  return T_cam_key.translation().norm() > options.translation * MeasureSceneDepth(std::move(depths)).median;
 }
 
 void FrameHandler::StartSegment(Bootstrap bootstrap) {

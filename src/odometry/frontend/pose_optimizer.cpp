@@ -54,32 +54,34 @@ Eigen::Matrix<double, 2, 6> ReprojectionJacobian(const geometry::SE3& T_cam_worl
   return observation.J_pixel_normalized * jacobian;
 }
 
-geometry::Matrix6d PoseOptimizer::Minimize(std::span<const PoseObservation> observations, geometry::SE3* pose) const {
+geometry::Matrix6d PoseOptimizer::Minimize(std::span<const PoseObservation> observations,
+                                           geometry::SE3* T_cam_world) const {
   geometry::Matrix6d normal;
   for (int iteration = 0; iteration < options_.iterations; ++iteration) {
-    const double scale = RobustScale(ResidualNorms(observations, *pose));
+    const double scale = RobustScale(ResidualNorms(observations, *T_cam_world));
     normal.setZero();
     geometry::Vector6d gradient = geometry::Vector6d::Zero();
     for (const auto& observation : observations) {
-      const Eigen::Vector2d error = ReprojectionError(*pose, observation);  // equation 1
+      const Eigen::Vector2d error = ReprojectionError(*T_cam_world, observation);  // equation 1
       if (!error.allFinite()) continue;
       const double weight = iteration < kHuberIterations ? HuberWeight(error.norm(), kHuberWidth * scale)
                                                          : TukeyWeight(error.norm(), kTukeyWidth * scale);
-      const Eigen::Matrix<double, 2, 6> jacobian = ReprojectionJacobian(*pose, observation);  // equation 2
-      normal += weight * jacobian.transpose() * jacobian;                                     // equation 5
+      const Eigen::Matrix<double, 2, 6> jacobian = ReprojectionJacobian(*T_cam_world, observation);  // equation 2
+      normal += weight * jacobian.transpose() * jacobian;                                            // equation 5
       gradient += weight * jacobian.transpose() * error;
     }
     normal.diagonal() *= 1.0 + kDamping;
     const geometry::Vector6d step = -normal.ldlt().solve(gradient);
     if (!step.allFinite()) break;
-    *pose = geometry::SE3::Exp(step) * *pose;
+    *T_cam_world = geometry::SE3::Exp(step) * *T_cam_world;
     if (iteration > kHuberIterations && step.squaredNorm() < kMinStep2) break;
   }
   return normal;
 }
 
-PoseEstimate PoseOptimizer::Optimize(std::span<const PoseObservation> observations, const geometry::SE3& start) const {
-  PoseEstimate result{.T_cam_world = start, .inliers = std::vector<bool>(observations.size())};
+PoseEstimate PoseOptimizer::Optimize(std::span<const PoseObservation> observations,
+                                     const geometry::SE3& T_cam_world_initial) const {
+  PoseEstimate result{.T_cam_world = T_cam_world_initial, .inliers = std::vector<bool>(observations.size())};
   if (observations.size() < kMinObservations) return result;
   const geometry::Matrix6d normal = Minimize(observations, &result.T_cam_world);
   const auto norms = ResidualNorms(observations, result.T_cam_world);

@@ -38,16 +38,16 @@ class PoseOptimizer {
  public:
   explicit PoseOptimizer(const PoseOptions& options) : options_(options) {}
 
-  /// `start` is T_cam_world. With fewer than three observations the result is the start without inliers.
-  PoseEstimate Optimize(std::span<const PoseObservation> observations, const geometry::SE3& start) const;
+  /// With fewer than three observations the result is the initial pose without inliers.
+  PoseEstimate Optimize(std::span<const PoseObservation> observations, const geometry::SE3& T_cam_world_initial) const;
 
   /// Whether the estimate has enough inliers.
   bool Accepts(const PoseEstimate& estimate) const { return Accepts(estimate, options_.min_inlier_ratio); }
   bool Accepts(const PoseEstimate& estimate, double min_inlier_ratio) const;
 
  private:
-  /// Minimises the cost from `pose`; returns the last normal matrix.
-  geometry::Matrix6d Minimize(std::span<const PoseObservation> observations, geometry::SE3* pose) const;
+  /// Minimises the cost from `T_cam_world`; returns the last normal matrix.
+  geometry::Matrix6d Minimize(std::span<const PoseObservation> observations, geometry::SE3* T_cam_world) const;
 
   PoseOptions options_;
 };

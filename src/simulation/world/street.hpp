@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "evo/core/random.hpp"
+#include "evo/simulation/scene_options.hpp"
+#include "simulation/world/reference_line.hpp"
 #include "simulation/world/scene_builder.hpp"
 #include "simulation/world/textures.hpp"
 
