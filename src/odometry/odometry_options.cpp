@@ -104,6 +104,8 @@ void Register(Parameters& parameters, CovarianceOptions& options) {
                  "factor on the poses' variances: the number of tracks that share their errors");
   parameters.Add("odometry.covariance.rotation_bias_ratio", &options.rotation_bias_ratio, 0, 1,
                  "standard deviation of the rotation common to all tracks about each axis, over their motion");
+  parameters.Add("odometry.covariance.samples", &options.samples, 10, 10000,
+                 "number of samples of the poses' joint errors that the covariances are computed from");
   parameters.Alias("odometry.covariance.alike", "odometry.covariance.variance_inflation");
   parameters.Alias("odometry.covariance.turn", "odometry.covariance.rotation_bias_ratio");
 }
@@ -137,6 +139,12 @@ void Register(Parameters& parameters, GroundOptions& options) {
                  "height of the camera above the road, which makes the scale metric; 0: unknown (m)");
   parameters.Add("odometry.ground.scale_drift_ratio", &options.scale_drift_ratio, 1e-6, 1,
                  "standard deviation of the scale's relative change over a path of one camera height");
+  parameters.Add("odometry.ground.common_sigma_ratio", &options.common_sigma_ratio, 0, 1,
+                 "relative standard deviation of the scale that all tracks on the ground have in common");
+  parameters.Add("odometry.ground.max_lateral_ratio", &options.max_lateral_ratio, 0.01, 10,
+                 "maximum lateral offset of a track on the ground, over its depth below the path");
+  parameters.Add("odometry.ground.min_path_heights", &options.min_path_heights, 0, 1e6,
+                 "minimum path length at which an unknown height counts as constant (camera heights)");
   parameters.Alias("odometry.ground.drift", "odometry.ground.scale_drift_ratio");
 }
 

@@ -81,6 +81,7 @@ struct FrameHandlerOptions {
 struct CovarianceOptions {
   double variance_inflation = 5.0;
   double rotation_bias_ratio = 0.001;
+  int samples = 100;
 };
 
 /// The bundle adjustment of the whole run.
@@ -101,6 +102,9 @@ struct GroundOptions {
   bool hold_height = true;
   double camera_height_m = 0.0;
   double scale_drift_ratio = 0.002;
+  double common_sigma_ratio = 0.005;
+  double max_lateral_ratio = 0.8;
+  double min_path_heights = 10.0;
 };
 
 struct OdometryOptions {

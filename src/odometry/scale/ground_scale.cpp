@@ -20,12 +20,6 @@ namespace {
 constexpr double kInitialWindow = 0.1;  // over the typical distance of the tracks, before the height is known
 constexpr double kWindow = 3.0;         // heights to either side that the path is smoothed over
 constexpr double kMaxDistance = 40.0;   // heights of arc length from the camera that observes a track to the track
-// Lateral offset over depth below the path. Farther out there are kerbs and parked cars, and near the image's border
-// the tracks of a road drift outwards.
-constexpr double kMaxLateralRatio = 0.8;
-// Relative standard deviation that tracks on a road have in common: on simulated drives lengths come out so much short.
-constexpr double kCommonSigma = 0.005;
-constexpr double kMinPathHeights = 10.0;  // length of the path from which on an unknown height is taken for constant
 
 /// All poses of a run in order of time.
 struct CameraPath {
@@ -54,14 +48,15 @@ double MedianDistance(const std::vector<TriangulatedTrack>& tracks, const Camera
   return Median(std::move(distances));
 }
 
-/// The tracks below the path.
+/// The tracks below the path. Beside it there are kerbs and parked cars, and near the image's border the tracks of a
+/// road drift outwards: at most `max_lateral_ratio` of the depth to the side.
 std::vector<GroundObservation> FindGroundObservations(const PathFrame& path_frame,
-                                                      const std::vector<TriangulatedTrack>& tracks,
-                                                      double max_distance) {
+                                                      const std::vector<TriangulatedTrack>& tracks, double max_distance,
+                                                      double max_lateral_ratio) {
   std::vector<GroundObservation> observations;
   for (const TriangulatedTrack& track : tracks) {
     const auto place = path_frame.Locate(track.position, track.last_pose, max_distance);
-    if (!place || !(place->below > 0.0) || std::abs(place->right) > kMaxLateralRatio * place->below) continue;
+    if (!place || !(place->below > 0.0) || std::abs(place->right) > max_lateral_ratio * place->below) continue;
     const double inverse = 1.0 / place->below;
     const double sigma = std::sqrt(place->down.dot(track.covariance * place->down));
     observations.push_back({place->arc_length, inverse, sigma * inverse * inverse, place->right * inverse});
@@ -86,7 +81,8 @@ std::optional<PathHeights> MeasureHeights(const GroundOptions& options, const st
     for (std::size_t i = 1; i < path.segment_begins.size(); ++i) {
       profile_options.scale_breaks.push_back(path_frame.arc_length(path.segment_begins[i]));
     }
-    const auto observations = FindGroundObservations(path_frame, tracks, kMaxDistance / kWindow * window);
+    const auto observations =
+        FindGroundObservations(path_frame, tracks, kMaxDistance / kWindow * window, options.max_lateral_ratio);
     auto profile = FitHeightProfile(profile_options, observations);
     if (!profile) return std::nullopt;
     heights.profile = std::move(*profile);
@@ -157,7 +153,7 @@ GroundScale ScaleByGround(const GroundOptions& options, const std::vector<Frame>
                           std::vector<Segment>* segments) {
   const auto heights = MeasureHeights(options, TriangulateTracks(frames, *segments), ListPoses(*segments));
   const bool is_metric = options.camera_height_m > 0.0;
-  if (!heights || (!is_metric && heights->profile.path_length_in_heights < kMinPathHeights)) {
+  if (!heights || (!is_metric && heights->profile.path_length_in_heights < options.min_path_heights)) {
     spdlog::log(is_metric ? spdlog::level::warn : spdlog::level::info,
                 "odometry: no ground found below the path: the scale stays arbitrary and may drift");
     return {};
@@ -166,10 +162,12 @@ GroundScale ScaleByGround(const GroundOptions& options, const std::vector<Frame>
   std::vector<double> scales;
   for (const double inverse_height : heights->inverse_heights) scales.push_back(height * inverse_height);
   const HeightProfileQuality& quality = heights->profile.quality;
+  // Tracks on a road err together: on simulated drives lengths come out too short by the common ratio.
+  const double sigma = std::hypot(quality.relative_sigma, options.common_sigma_ratio);
   // A random walk that is smoothed to this standard deviation has errors correlated over this many heights.
   const double correlation_heights =
       std::max(2.0 * kWindow, 2.0 * std::pow(quality.relative_sigma / options.scale_drift_ratio, 2));
-  Rescale(scales, {std::hypot(quality.relative_sigma, kCommonSigma), height * correlation_heights}, frames, segments);
+  Rescale(scales, {sigma, height * correlation_heights}, frames, segments);
   const auto [min_scale, max_scale] = std::ranges::minmax(scales);
   spdlog::info(
       "odometry: scale from the ground: {:.4g} to {:.4g} {} a unit along the path, {} tracks, {:.0f} % of the path "

@@ -155,7 +155,7 @@ class HeightProfileFitter {
       const double u = error / std::max(gate, kTukeyWidth * sigma);
       if (std::abs(u) >= 1.0) continue;
       ++inliers;
-      const double weight = std::pow((1.0 - u * u) / sigma, 2);
+      const double weight = std::pow((1.0 - u * u) / sigma, 2);  // Tukey's, over the variance
       const auto [node, fraction] = Locate(profile_, o.arc_length);
       const double x = profile_.InverseHeight(o.arc_length);
       smoother.AddObservation(node, fraction, 1.0 - profile_.roll * o.lateral_ratio, o.inverse_height,

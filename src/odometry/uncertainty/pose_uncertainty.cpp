@@ -14,7 +14,6 @@ namespace evo::odometry {
 
 namespace {
 
-constexpr Eigen::Index kSamples = 100;     // standard deviations with a relative error of 7 %
 constexpr std::size_t kRotationSpan = 25;  // poses between which a rotation is compared with the typical one
 // Standard deviation over the typical one; less at the start, because the first pose rotates the whole path.
 constexpr double kMaxStartRatio = 2.0;
@@ -22,7 +21,7 @@ constexpr double kMaxEndRatio = 3.0;
 constexpr std::size_t kMaxRemovedFraction = 10;  // at most one in so many poses is removed at either end
 
 /// Errors by the tracks' noise; empty if the system is singular.
-std::optional<PoseErrorSamples> SampleTrackErrors(double variance_inflation, const BundleOptions& options,
+std::optional<PoseErrorSamples> SampleTrackErrors(const CovarianceOptions& covariance, const BundleOptions& options,
                                                   const BundleProblem& problem, ThreadPool* pool,
                                                   RademacherSigns* random) {
   const auto begin = FirstObservations(problem);
@@ -30,13 +29,14 @@ std::optional<PoseErrorSamples> SampleTrackErrors(double variance_inflation, con
   NormalEquations equations(problem, noise, begin, pool);
   equations.Linearize();
   if (!equations.Factorize()) return std::nullopt;
-  std::vector<std::vector<double>> signs(kSamples, std::vector<double>(problem.points.size()));
+  const auto samples = static_cast<std::size_t>(covariance.samples);
+  std::vector<std::vector<double>> signs(samples, std::vector<double>(problem.points.size()));
   for (auto& sample_signs : signs) {
     for (double& sign : sample_signs) sign = random->Next();
   }
-  PoseErrorSamples errors(problem.T_cam_world, kSamples);
-  ForEachIndex(pool, kSamples, 1, [&](std::size_t k) {
-    const Eigen::VectorXd steps = std::sqrt(variance_inflation) * equations.SolveWithSigns(signs[k]);
+  PoseErrorSamples errors(problem.T_cam_world, covariance.samples);
+  ForEachIndex(pool, samples, 1, [&](std::size_t k) {
+    const Eigen::VectorXd steps = std::sqrt(covariance.variance_inflation) * equations.SolveWithSigns(signs[k]);
     errors.sample(static_cast<Eigen::Index>(k)).tail(steps.size()) = steps;
   });
   return errors;
@@ -98,7 +98,7 @@ std::optional<PoseUncertainty> EstimatePoseUncertainty(const CovarianceOptions& 
                                                        const BundleOptions& options, const BundleProblem& problem,
                                                        ThreadPool* pool) {
   RademacherSigns random(1);
-  auto errors = SampleTrackErrors(covariance.variance_inflation, options, problem, pool, &random);
+  auto errors = SampleTrackErrors(covariance, options, problem, pool, &random);
   if (!errors) return std::nullopt;
   const PoseRange certain_range = FindCertainRange(*errors);
   AddRotationBias(covariance.rotation_bias_ratio, problem, &random, &*errors);
