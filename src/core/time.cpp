@@ -42,6 +42,7 @@ std::optional<TimeNs> ParseTime(std::string_view text) {
   if (digits + decimals == 0) return std::nullopt;
   if (p != end) {
     double seconds = 0.0;
+    // NOLINTNEXTLINE(bugprone-suspicious-stringview-data-usage): `end` bounds it.
     const auto [last, error] = std::from_chars(text.data(), end, seconds);
     if (error != std::errc() || last != end || !(std::abs(seconds) < kMaxSeconds)) return std::nullopt;
     return FromSeconds(seconds);

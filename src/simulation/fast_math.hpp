@@ -33,6 +33,7 @@ inline float FastLog2(float x) {
 /// time constants. With x = k log(2) - r and |r| <= log(2) / 2, exp(r) - 1 is a series.
 inline float FastOneMinusExp(float x) {
   const float bounded = x < 80.0F ? x : 80.0F;
+  // NOLINTNEXTLINE(bugprone-incorrect-roundings): never negative, and any near k will do.
   const auto k = static_cast<std::int32_t>(bounded * 1.44269504F + 0.5F);
   const auto whole = static_cast<float>(k);
   const float r = (whole * 0.693359375F - bounded) - whole * 2.12194440e-4F;  // log(2) in two parts

@@ -11,6 +11,7 @@
 #include "evo/io/pose_covariance_io.hpp"
 #include "evo/io/trajectory_io.hpp"
 #include "evo/odometry/map_writer.hpp"
+#include "evo/odometry/odometry.hpp"
 
 namespace evo::app {
 

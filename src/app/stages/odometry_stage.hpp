@@ -7,6 +7,8 @@
 #include "app/run/stage_run.hpp"
 #include "evo/events/tracks.hpp"
 #include "evo/geometry/camera.hpp"
+#include "evo/odometry/odometry_options.hpp"
+#include "evo/odometry/odometry_result.hpp"
 
 namespace evo::app {
 

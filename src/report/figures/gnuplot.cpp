@@ -2,11 +2,11 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <csignal>
 #include <spawn.h>
 #include <spdlog/spdlog.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <csignal>
 
 #include <cstring>
 #include <fstream>
@@ -15,8 +15,6 @@
 
 #include "evo/core/error.hpp"
 #include "evo/core/output_file.hpp"
-
-extern char** environ;
 
 namespace evo::report {
 

@@ -35,6 +35,7 @@ Size ReadSvgSize(const std::string& svg) {
   Size size;
   const auto box = svg.substr(0, 2000).find("viewBox=");
   const bool found = box != std::string::npos &&
+                     // NOLINTNEXTLINE(bugprone-unchecked-string-to-number-conversion): five digits always fit.
                      std::sscanf(svg.c_str() + box, "viewBox=\"0 0 %5d %5d\"", &size.width, &size.height) == 2;
   return found && size.width > 0 && size.height > 0 ? size : Size();
 }

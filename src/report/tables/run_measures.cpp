@@ -8,17 +8,17 @@
 namespace evo::report {
 
 const std::vector<RunMeasure>& RunMeasures() {
-  static const std::vector<RunMeasure> measures{{"path_m", "Path", "m", 1.0, 1},
-                                                {"coverage", "Coverage", "%", 100.0, 1},
-                                                {"mean_abs_longitudinal_m", "Longitudinal", "m", 1.0, 4},
-                                                {"mean_abs_lateral_m", "Lateral", "m", 1.0, 4},
-                                                {"mean_planar_m", "Planar", "m", 1.0, 4},
-                                                {"mean_planar_percent", "Planar", "%", 1.0, 3},
-                                                {"max_planar_percent", "Max planar", "%", 1.0, 3},
-                                                {"ape_rmse_m", "APE RMSE", "m", 1.0, 4},
-                                                {"lifetime_mean_frames", "Lifetime", "frames", 1.0, 1},
-                                                {"speed_x_real_time", "Speed", "x real time", 1.0, 2}};
-  return measures;
+  static const std::vector<RunMeasure> kMeasures{{"path_m", "Path", "m", 1.0, 1},
+                                                 {"coverage", "Coverage", "%", 100.0, 1},
+                                                 {"mean_abs_longitudinal_m", "Longitudinal", "m", 1.0, 4},
+                                                 {"mean_abs_lateral_m", "Lateral", "m", 1.0, 4},
+                                                 {"mean_planar_m", "Planar", "m", 1.0, 4},
+                                                 {"mean_planar_percent", "Planar", "%", 1.0, 3},
+                                                 {"max_planar_percent", "Max planar", "%", 1.0, 3},
+                                                 {"ape_rmse_m", "APE RMSE", "m", 1.0, 4},
+                                                 {"lifetime_mean_frames", "Lifetime", "frames", 1.0, 1},
+                                                 {"speed_x_real_time", "Speed", "x real time", 1.0, 2}};
+  return kMeasures;
 }
 
 std::optional<double> ParseMeasure(const std::string& text) {

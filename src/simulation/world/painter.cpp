@@ -138,7 +138,7 @@ void Painter::Lettering(Random& random, int x, int y, int width, int height, dou
 
 Texture Painter::Finish() {
   for (Texel& texel : texels_) texel.reflectance = std::clamp(texel.reflectance, kMinReflectance, kMaxReflectance);
-  return Texture(width_, height_, std::move(texels_));
+  return Texture(width_, height_, texels_);
 }
 
 }  // namespace evo::simulation

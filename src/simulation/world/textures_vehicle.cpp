@@ -89,7 +89,7 @@ Texture PaintCarShadow() {
       texels[static_cast<std::size_t>(y) * 64 + x] = {0.06F, static_cast<float>(std::clamp(edge - 0.06, 0.0, 0.85))};
     }
   }
-  return Texture(64, 128, std::move(texels));
+  return Texture(64, 128, texels);
 }
 
 }  // namespace evo::simulation

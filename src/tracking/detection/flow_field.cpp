@@ -25,8 +25,9 @@ FlowField::FlowField(int width, int height, const TrackerOptions& options)
       cells_(static_cast<std::size_t>(columns_ * rows_)) {}
 
 Eigen::Vector2d FlowField::Centre(std::size_t index) const {
-  const auto i = static_cast<int>(index);
-  return {(i % columns_ + 0.5) * kCellPx, (static_cast<double>(i / columns_) + 0.5) * kCellPx};
+  const int column = static_cast<int>(index) % columns_;
+  const int row = static_cast<int>(index) / columns_;
+  return {(column + 0.5) * kCellPx, (row + 0.5) * kCellPx};
 }
 
 FlowField::Cell FlowField::AverageFeatures(const Eigen::Vector2d& centre,
