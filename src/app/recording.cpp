@@ -82,7 +82,7 @@ Recording OpenRecording(const RecordingArguments& arguments, RunRecord* record) 
   auto reader = io::OpenEvents(files.events, interval, camera.width(), camera.height());
   record->AddLargeInput("events", files.events);
   record->AddInput("calibration", calibration);
-  return {std::move(camera), files.events, std::move(reader), interval, files.ground_truth};
+  return {camera, files.events, std::move(reader), interval, files.ground_truth};
 }
 
 std::string SequenceName(const std::filesystem::path& file) {

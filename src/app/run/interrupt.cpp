@@ -43,6 +43,7 @@ InterruptGuard::InterruptGuard(fs::path folder) : folder_(std::move(folder)) {
 
 InterruptGuard::~InterruptGuard() {
   done_ = true;
+  // NOLINTNEXTLINE(bugprone-bad-signal-to-kill-thread): Wait() takes it.
   ::pthread_kill(thread_.native_handle(), SIGTERM);  // wakes Wait(), which sees done_
   thread_.join();
   ::pthread_sigmask(SIG_SETMASK, &previous_, nullptr);
