@@ -20,7 +20,7 @@ well it is tracked and followed. The table goes to stdout and OUT/scenes.md, the
 OUT/scenes_summary.csv, all plots to OUT/report/index.html. Sequences stay in SEQUENCES/SCENE_SEED_PART, in MVSEC's
 layout for vehicles and UZH's for the others. Without [FROM+]SECONDS drives begin at the scene's start and end as
 --duration says; other scenes last as long as their file says. Sequences are kept as long as the scene's parameters
-are the same; --anew is needed where the simulator itself has changed."""
+are the same; --resimulate is needed where the simulator itself has changed."""
 EXAMPLES = """\
 examples:
   python3 -m bench scenes
@@ -44,7 +44,7 @@ SPREAD = [
     ("CPU s/s", "simulate_cpu_per_s", ".1f", 1.0, "Processor time to simulate a second."),
     ("MB", "simulate_peak_memory_mb", ".0f", 1.0, "Largest resident memory of the simulation."),
     ("covered, %", "coverage", ".1f", 100.0, "Share of the time with poses."),
-    ("started anew", "rebootstraps", "d", 1.0, "Times that the map was started again."),
+    ("reinitialised", "rebootstraps", "d", 1.0, "Times that the map was started again."),
     ("planar mean, %", "mean_planar_percent", ".2f", 1.0, "Mean planar error, first pose and one scale from the truth."),
     ("largest, %", "max_planar_percent", ".2f", 1.0, "Largest planar error, in % of the path."),
     ("sim3 mean, %", "sim3_mean_planar_percent", ".2f", 1.0, "Mean planar error after the best similarity."),
@@ -114,18 +114,18 @@ def summarize(rows: list[Row]) -> list[Row]:
 
 
 def measure(bench: Bench, simulator: Simulator, settings: list[str], sequences: list[Sequence], delete: bool,
-            anew: bool) -> None:
+            resimulate: bool) -> None:
     """Simulates, runs and judges what is missing; with `delete` one sequence after the other."""
     def key(sequence: Sequence) -> str:
         return key_of(bench.program, settings, f"threads {bench.threads}", identity(sequence.folder))
 
     left = [item for item in sequences
-            if anew or not item.is_made() or not is_done(bench.out / item.name, key(item))]
+            if resimulate or not item.is_made() or not is_done(bench.out / item.name, key(item))]
     if not delete:
-        do(simulator.missing(left, anew), bench.jobs)
+        do(simulator.missing(left, resimulate), bench.jobs)
     for item in left:
         if delete:
-            do(simulator.missing([item], anew))
+            do(simulator.missing([item], resimulate))
         if not is_done(bench.out / item.name, key(item)):
             do([Job(f"run        {bench.out / item.name}",
                     lambda item=item: run_and_judge(bench, settings, item, key(item)))])
@@ -147,7 +147,7 @@ def main(words: list[str]) -> int:
         options.add_argument(name, type=name_value, action="append", default=[], metavar="NAME=VALUE",
                              help=f"a parameter of `evo-run {command}`; may be repeated")
     options.add_argument("--simulate-only", action="store_true", help="no runs, no table; prints the sequences' folders")
-    options.add_argument("--anew", action="store_true", help="simulate all sequences again")
+    options.add_argument("--resimulate", "--anew", action="store_true", help="simulate all sequences again")
     options.add_argument("--delete", action="store_true",
                          help="delete each sequence after use: 5 to 20 MB for a second of it")
     add_common(options, "out/bench_scenes")
@@ -157,11 +157,11 @@ def main(words: list[str]) -> int:
     simulator = bench.simulator(tuple(arguments.simulate_set), drive_seconds=arguments.duration[0])
     sequences = [simulator.sequence(scene, seed) for scene in bench.scenes for seed in bench.seeds]
     if arguments.simulate_only:
-        do(simulator.missing(sequences, arguments.anew), bench.jobs)
+        do(simulator.missing(sequences, arguments.resimulate), bench.jobs)
         print("\n".join(str(sequence.folder) for sequence in sequences))
         return 0
     settings = [word for setting in arguments.set for word in ("--set", setting)]
-    measure(bench, simulator, settings, sequences, arguments.delete, arguments.anew)
+    measure(bench, simulator, settings, sequences, arguments.delete, arguments.resimulate)
     return finish(bench, sequences)
 
 

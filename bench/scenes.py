@@ -167,10 +167,10 @@ class Simulator:
         """The job that makes a sequence."""
         return Job(f"simulate   {sequence.folder}", lambda: self.make(sequence), float(sequence.part.seconds))
 
-    def missing(self, sequences: List[Sequence], anew: bool = False) -> list[Job]:
+    def missing(self, sequences: List[Sequence], resimulate: bool = False) -> list[Job]:
         """The jobs of those sequences that are not there, each once."""
         chosen = {sequence.folder: sequence for sequence in sequences
-                  if anew or not sequence.is_made() or not sequence.has_events()}
+                  if resimulate or not sequence.is_made() or not sequence.has_events()}
         return [self.job(sequence) for sequence in chosen.values()]
 
     def make(self, sequence: Sequence) -> None:

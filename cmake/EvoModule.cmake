@@ -11,11 +11,17 @@ if(EVO_NATIVE)
   target_compile_options(evo_flags INTERFACE -march=native $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds>)
 endif()
 if(EVO_SANITIZE)
-  # Instrumented code makes GCC see uninitialised values where there are none, as its manual says.
-  target_compile_options(evo_flags INTERFACE -fsanitize=${EVO_SANITIZE} -fno-omit-frame-pointer
-                                             -Wno-maybe-uninitialized)
   target_link_options(evo_flags INTERFACE -fsanitize=${EVO_SANITIZE})
 endif()
+
+# Instruments a target of a module, if its module is to be.
+function(evo_sanitize target module)
+  if(EVO_SANITIZE AND (NOT EVO_SANITIZE_MODULES OR module IN_LIST EVO_SANITIZE_MODULES))
+    # Instrumented code makes GCC see uninitialised values where there are none, as its manual says.
+    target_compile_options(${target} PRIVATE -fsanitize=${EVO_SANITIZE} -fno-omit-frame-pointer
+                                             -Wno-maybe-uninitialized)
+  endif()
+endfunction()
 
 # evo_module(<name> SOURCES <file>... DEPENDS <module or library>...)
 # One static library a module; it depends only on modules listed above it in CMakeLists.txt (scripts/check.py checks
@@ -35,6 +41,7 @@ function(evo_module name)
     list(APPEND precompiled <CLI/CLI.hpp>)
   endif()
   target_precompile_headers(evo_${name} PRIVATE ${precompiled})
+  evo_sanitize(evo_${name} ${name})
 endfunction()
 
 # evo_test(<module> SOURCES <file>... [DEPENDS <library>...])
@@ -47,6 +54,7 @@ function(evo_test name)
   # GCC 12 sees overlaps and overflows in chains of string + string where there are none (its bug 105329).
   target_compile_options(${name}_test PRIVATE
     $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict;-Wno-array-bounds;-Wno-stringop-overflow>)
+  evo_sanitize(${name}_test ${name})
   target_compile_definitions(${name}_test PRIVATE EVO_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   gtest_discover_tests(${name}_test TEST_PREFIX "${name}." DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)
 endfunction()

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes docs/figures/overview.png anew: a simulated turn, its event frames with tracks, and its path.
+# Makes docs/figures/overview.png again: a simulated turn, its event frames with tracks, and its path.
 # Needs rsvg-convert (package librsvg2-bin) and a built program.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

@@ -1,4 +1,4 @@
-"""Documents: links resolve; files, commands, options and parameters that they name exist; generated files are current."""
+"""Documents: links resolve; the files, commands, options and parameters in them exist; generated files are current."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ _GENERATED = {"docs/parameters.md"}
 _LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
 _HEADING = re.compile(r"^#+ (.+)$", re.M)
 _PATH = re.compile(r"`((?:src|include|configs|scripts|tests|docs|bench|cmake|data_samples)/[\w./-]*\w)`")
-_PARAMETER = re.compile(r"\b((?:tracker|odometry|evaluation|street|motion|sensor|simulation|output|scene|road)(?:\.[a-z_0-9]+)+)\b")
+_GROUPS = "tracker|odometry|evaluation|street|motion|sensor|simulation|output|scene|road"
+_PARAMETER = re.compile(rf"\b((?:{_GROUPS})(?:\.[a-z_0-9]+)+)\b")
 _FILE_ENDINGS = ("hpp", "cpp", "py", "md", "yaml", "txt", "csv", "json")
 # In code: after a backtick, or in an indented line, also with a path before it.
 _COMMAND = re.compile(r"(?:`|^ {4}|\n {4}|/)(?:[\w./-]*/)?evo-run ([a-z]+)\b([^`|;#]*)")
@@ -122,8 +123,8 @@ def _unknown_names(program: Program, line: str) -> list[str]:
 
 def _outdated(root: Path, program: Program) -> list[str]:
     problems = []
-    for file, arguments in (("configs/default.yaml", ("config", "--print")), ("docs/parameters.md", ("config", "--markdown"))):
+    for file, option in (("configs/default.yaml", "--print"), ("docs/parameters.md", "--markdown")):
         path = root / file
-        if not path.exists() or path.read_text(encoding="utf-8") != program.output(*arguments):
-            problems.append(f"{file}:1: is out of date; run evo-run {' '.join(arguments)} > {file}")
+        if not path.exists() or path.read_text(encoding="utf-8") != program.output("config", option):
+            problems.append(f"{file}:1: is out of date; run evo-run config {option} > {file}")
     return problems

@@ -1,4 +1,4 @@
-"""Names of rigid transforms: T_a_b takes coordinates in frame b to frame a, so neighbours in a product share a frame."""
+"""Names of transforms: T_a_b takes coordinates in frame b to frame a, so neighbours in a product share a frame."""
 
 from __future__ import annotations
 

@@ -34,7 +34,8 @@ class LayersTest(Tree):
     def test_a_lower_layer_must_not_include_a_higher_one(self):
         self.write("include/evo/report/csv.hpp", "namespace evo::report {}\n")
         self.write("src/geometry/se3.cpp", '#include "evo/report/csv.hpp"\nnamespace evo::geometry {\n}\n')
-        self.assertIn("src/geometry/se3.cpp:1: geometry must not include report, which is a layer above it", layers.check(self.root))
+        problem = "src/geometry/se3.cpp:1: geometry must not include report, which is a layer above it"
+        self.assertIn(problem, layers.check(self.root))
 
     def test_a_private_header_of_another_module_is_refused(self):
         self.write("src/events/tiles.hpp", "namespace evo::events {\n}\n")
@@ -54,7 +55,8 @@ class LayersTest(Tree):
 
     def test_names_belong_into_the_namespace_of_their_module(self):
         self.write("src/tracking/b.cpp", "namespace evo::odometry {\n}\n")
-        self.assertEqual(layers.check(self.root), ["src/tracking/b.cpp:1: namespace evo::odometry should be evo::tracking"])
+        problem = "src/tracking/b.cpp:1: namespace evo::odometry should be evo::tracking"
+        self.assertEqual(layers.check(self.root), [problem])
 
 
 class TransformsTest(Tree):
@@ -123,7 +125,8 @@ class DocsTest(Tree):
         return docs.check(self.root, self.binary)
 
     def test_what_exists_may_be_named(self):
-        text = "# A page\n[here](#a-page) [there](../README.md) `evo-run run --events E --out O` `tracker.features` `configs/default.yaml`\n"
+        text = ("# A page\n[here](#a-page) [there](../README.md) `evo-run run --events E --out O` "
+                "`tracker.features` `configs/default.yaml`\n")
         self.assertEqual(self.problems(text), [])
 
     def test_links_resolve(self):
