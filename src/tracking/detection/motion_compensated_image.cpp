@@ -97,7 +97,8 @@ cv::Mat MotionCompensatedImage(const events::EventHistory& history, TimeNs t, co
   const std::size_t rows = history.tile_rows();
   const HalfWindowLimits limits{0.5 * motion_px, 0.5 * options.min_window_s, 0.5 * options.max_window_s};
   pool->ForEach(kStripes, [&](std::size_t i) {
-    stripes[i] = cv::Mat::zeros(history.height(), history.width(), CV_32F);
+    stripes[i].create(history.height(), history.width(), CV_32F);
+    stripes[i].setTo(0.0);
     for (std::size_t row = i * rows / kStripes; row < (i + 1) * rows / kStripes; ++row) {
       for (std::size_t column = 0; column < history.tile_columns(); ++column) {
         AddTile(history, {row, column}, t, flow, limits, &stripes[i]);
