@@ -27,7 +27,7 @@ TABLE = [
     Column("", "config"),
     SpreadColumn("covered, %", "coverage_since_start_share", ".1f", 100,
                  "Share of the time since the first pose that has poses."),
-    SpreadColumn("anew", "rebootstraps", "d", meaning="Times that the map was started again."),
+    SpreadColumn("reinitialised", "rebootstraps", "d", meaning="Times that the map was started again."),
     SpreadColumn("origin-scale: mean planar, %", "mean_planar_percent", ".3g",
                  meaning="Mean planar error in % of the path, with the first pose and one scale from the truth."),
     SpreadColumn("largest", "max_planar_percent", ".3g", meaning="Largest planar error, in % of the path."),
