@@ -35,6 +35,7 @@ MAY_DIFFER = [
     (r"(^|/)runs\.(csv|tex)$", "a table of many runs holds wall times and differing parameters"),
     (r"^config_", "names and descriptions of parameters"),
     (r"^simulate_print", "names and descriptions of parameters"),
+    (r"(^|/)images/", "looks of the drawn event frames"),
     (r"(^|/)stderr\.txt$", "wording and times of the log"),
 ]
 # Parts of what is printed that hold times, and the folder that a binary works in.

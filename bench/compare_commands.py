@@ -70,7 +70,7 @@ def sample_commands() -> list[Command]:
                 "--ground-truth", f"{events}/{truth}", "--calibration", f"{events}/{calibration}"),
             out(f"evaluate_{name}", "evaluate", "--estimate", f"odometry_{name}/trajectory.txt",
                 "--ground-truth", f"{events}/{truth}", "--align", "none,origin,origin-scale,se3,posyaw,sim3:5s",
-                "--rpe", "1f,0.5s,0.3m", "--covariances", f"odometry_{name}/pose_covariance.csv"),
+                "--rpe", "1f,0.2s", "--covariances", f"odometry_{name}/pose_covariance.csv"),
             Command(f"info_{name}", ("info", events)),
         ]
     return found
@@ -90,9 +90,9 @@ def scene_commands() -> list[Command]:
             found.append(out(f"simulate_{name}_{threads}", "simulate", f"{{configs}}/scenes/{name}.yaml",
                              "--from", start, "--duration", "0.4", "--format", layout, "--threads", threads, cost=5))
     found += [
-        out("simulate_day_uzh", "simulate", "{configs}/scenes/driving_day.yaml", "--from", "52", "--duration", "1.2",
-            "--format", "uzh", "--seed", "3", cost=10),
-        out("run_simulated", "run", "--events", "simulate_day_uzh", "--threads", "2"),
+        out("simulate_day", "simulate", "{configs}/scenes/driving_day.yaml", "--from", "52", "--duration", "1.2",
+            "--seed", "3", cost=10),
+        out("run_simulated", "run", "--events", "simulate_day", "--threads", "2"),
         Command("simulate_print", ("simulate", "{configs}/scenes/driving_day.yaml", "--print")),
     ]
     return found
