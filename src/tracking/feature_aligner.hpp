@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "evo/core/time.hpp"
 #include "evo/events/event_history.hpp"
@@ -28,7 +29,8 @@ struct FeatureAlignment {
   TimeNs half_window = 0;
   events::LocalEvents events;
   double outlier_ratio = 0.0;  ///< mean probability that an event does not belong to the template
-  SelfBias self_bias;          ///< of the template, see AssociationTable
+  double flow_sigma_px_s = 0.0;  ///< standard deviation of the predicted flow
+  std::optional<SelfBias> self_bias;  ///< of the template, see AssociationTable; empty if its polarities have flipped
 
   bool is_aligned() const { return state == State::kAligned; }
   /// The aligned motion, or the predicted one of a resting feature.

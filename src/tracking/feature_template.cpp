@@ -16,32 +16,57 @@ constexpr double kMaxScaleChange = 1.25;
 // or when the depth varies by this ratio from its centre to its edge: cells of 1 px would alias or blur the pattern.
 constexpr double kMaxPerspective = 0.25;
 
+/// Writes the probabilities that polarities flip between two velocities. False if none does.
+bool FindFlips(const EventHistogram& histogram, const TemplateVelocity& reference, const TemplateVelocity& present,
+               double sigma_px_s, PolarityFlips* flips) {
+  if (histogram.planes() != 2 || !PolarityFlips::MayOccur(reference, present, sigma_px_s, histogram.radius())) {
+    return false;
+  }
+  flips->FindEdges(histogram);
+  flips->Update(reference, present, sigma_px_s);
+  return true;
+}
+
 }  // namespace
 
-FeatureTemplate::FeatureTemplate(EventHistogram first_window) : histogram_(std::move(first_window)) {
+FeatureTemplate::FeatureTemplate(EventHistogram first_window, const TemplateVelocity& velocity)
+    : histogram_(std::move(first_window)), velocity_(velocity) {
   histogram_.Scale(static_cast<float>(1.0 / histogram_.Total()));
 }
 
-void FeatureTemplate::Learn(const events::LocalEvents& events, const PatchMotion& motion, TimeNs half_window,
-                            const TrackerOptions& options, PatchShape* shape) {
-  const double new_ratio = std::min(1.0, unlearnt_s_ / (2.0 * ToSeconds(half_window)));
+bool FeatureTemplate::PredictPolarities(const TemplateVelocity& velocity, double sigma_px_s,
+                                        EventHistogram* predicted) const {
+  thread_local PolarityFlips flips;
+  if (!FindFlips(histogram_, velocity_, velocity, sigma_px_s, &flips)) return false;
+  *predicted = histogram_;
+  flips.Apply(predicted);
+  return true;
+}
+
+void FeatureTemplate::Learn(const AlignedWindow& window, const TrackerOptions& options, PatchShape* shape) {
+  const double new_ratio = std::min(1.0, unlearnt_s_ / (2.0 * ToSeconds(window.half)));
   if (new_ratio < kMinNewRatio) return;
   unlearnt_s_ = 0.0;
   ++windows_;
-  Blend(events, motion, std::max(1.0 - std::pow(1.0 - options.template_gain, new_ratio), 1.0 / windows_));
+  Blend(window, std::max(1.0 - std::pow(1.0 - options.template_gain, new_ratio), 1.0 / windows_));
   ResampleIfNeeded(options.patch_radius_px, shape);
   self_bias_.reset();
 }
 
-void FeatureTemplate::Blend(const events::LocalEvents& events, const PatchMotion& motion, double gain) {
-  thread_local std::optional<EventHistogram> window;
-  if (!window || window->side() != histogram_.side() || window->planes() != histogram_.planes()) {
-    window.emplace(histogram_.radius(), histogram_.planes());
+void FeatureTemplate::Blend(const AlignedWindow& window, double gain) {
+  thread_local std::optional<EventHistogram> histogram;
+  thread_local PolarityFlips flips;
+  if (!histogram || histogram->side() != histogram_.side() || histogram->planes() != histogram_.planes()) {
+    histogram.emplace(histogram_.radius(), histogram_.planes());
   }
-  window->Clear();
-  Accumulate(events, motion, &*window);
+  histogram->Clear();
+  Accumulate(window.events, window.motion, &*histogram);
+  if (FindFlips(histogram_, velocity_, VelocityInTemplate(window.motion), window.velocity_sigma_px_s, &flips)) {
+    flips.Apply(&*histogram);
+  }
   // Windows have equal weights, however many events they hold.
-  histogram_.Blend(static_cast<float>(1.0 - gain), *window, static_cast<float>(gain / std::max(1.0, window->Total())));
+  const double factor = gain / std::max(1.0, histogram->Total());
+  histogram_.Blend(static_cast<float>(1.0 - gain), *histogram, static_cast<float>(factor));
 }
 
 void FeatureTemplate::ResampleIfNeeded(int patch_radius_px, PatchShape* shape) {
@@ -49,6 +74,7 @@ void FeatureTemplate::ResampleIfNeeded(int patch_radius_px, PatchShape* shape) {
   const double perspective = shape->perspective.norm() * patch_radius_px;
   if (growth > kMaxScaleChange || growth < 1.0 / kMaxScaleChange || perspective > kMaxPerspective) {
     histogram_ = histogram_.Warped(shape->linear, shape->perspective);
+    velocity_ = velocity_.Transformed(shape->linear);
     scale_ *= growth;
     *shape = PatchShape();
   }

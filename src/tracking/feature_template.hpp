@@ -9,6 +9,7 @@
 #include "tracking/patch/association_table.hpp"
 #include "tracking/patch/em_alignment.hpp"
 #include "tracking/patch/event_histogram.hpp"
+#include "tracking/patch/polarity_flips.hpp"
 
 namespace evo::tracking {
 
@@ -18,14 +19,25 @@ struct PatchShape {
   Eigen::Vector2d perspective = Eigen::Vector2d::Zero();  ///< 1/px
 };
 
+/// The events of a window, and the motion of the pattern that they show.
+struct AlignedWindow {
+  const events::LocalEvents& events;
+  const PatchMotion& motion;
+  TimeNs half;                  ///< of the window
+  double velocity_sigma_px_s;  ///< standard deviation of the motion's velocity
+};
+
 /// The pattern of a feature: the events of its windows so far, in template coordinates.
 class FeatureTemplate {
  public:
-  /// Learns from the first window.
-  explicit FeatureTemplate(EventHistogram first_window);
+  /// Learns from the first window, in which the pattern moved with `velocity`.
+  FeatureTemplate(EventHistogram first_window, const TemplateVelocity& velocity);
 
-  /// Of total 1, however many events the windows held.
+  /// Of total 1, however many events the windows held, with the polarities of the first window's velocity.
   const EventHistogram& histogram() const { return histogram_; }
+  /// Writes the histogram with the polarities of another velocity to `predicted`. False if they are the same ones:
+  /// then it writes nothing.
+  bool PredictPolarities(const TemplateVelocity& velocity, double sigma_px_s, EventHistogram* predicted) const;
   /// Scale of the template's coordinates relative to the first window.
   double scale() const { return scale_; }
 
@@ -38,14 +50,14 @@ class FeatureTemplate {
   /// Learns from an aligned window unless it mostly repeats the last one: as a running mean at first, then as one that
   /// forgets, because a patch changes while it approaches. Resamples the template where the shape has changed much, and
   /// then resets the shape.
-  void Learn(const events::LocalEvents& events, const PatchMotion& motion, TimeNs half_window,
-             const TrackerOptions& options, PatchShape* shape);
+  void Learn(const AlignedWindow& window, const TrackerOptions& options, PatchShape* shape);
 
  private:
-  void Blend(const events::LocalEvents& events, const PatchMotion& motion, double gain);
+  void Blend(const AlignedWindow& window, double gain);
   void ResampleIfNeeded(int patch_radius_px, PatchShape* shape);
 
   EventHistogram histogram_;
+  TemplateVelocity velocity_;  // of the first window, in the coordinates of the histogram
   std::optional<SelfBias> self_bias_;
   double scale_ = 1.0;
   int windows_ = 1;          // learnt

@@ -152,8 +152,9 @@ void FeatureTracker::AdvanceFeature(const FeatureAlignment& alignment, TrackedFe
                                 alignment.outlier_ratio);
   feature->surface.CorrectGradient(ego_motion_.EstimateInverseDepthGradient(state.position, shape_rate),
                                    state.flow.norm());
-  feature->event_template.set_self_bias(alignment.self_bias);
-  feature->event_template.Learn(alignment.events, motion, alignment.half_window, options_, &state.shape);
+  if (alignment.self_bias) feature->event_template.set_self_bias(*alignment.self_bias);
+  feature->event_template.Learn({alignment.events, motion, alignment.half_window, alignment.flow_sigma_px_s}, options_,
+                                &state.shape);
 }
 
 void FeatureTracker::UpdateSurfaces() {

@@ -127,7 +127,7 @@ std::optional<FeatureInitializer::Candidate> FeatureInitializer::MakeCandidate(
   return Candidate{.feature = {.state = {position, position, flow, {}},
                                .window = {half_window, flow},
                                .surface = {inverse_depth, gradient},
-                               .event_template = FeatureTemplate(std::move(histogram))},
+                               .event_template = FeatureTemplate(std::move(histogram), VelocityInTemplate(motion))},
                    .information = information};
 }
 

@@ -110,6 +110,17 @@ void EventHistogram::Blend(float keep, const EventHistogram& other, float factor
   total_ = static_cast<double>(keep) * total_ + static_cast<double>(factor) * other.total_;
 }
 
+void EventHistogram::ExchangePlanes(std::span<const float> ratios) {
+  if (planes_ != 2) return;
+  float* const one = cells_.data();
+  float* const two = one + side() * side();
+  for (std::size_t i = 0; i < ratios.size(); ++i) {
+    const float moved = ratios[i] * (two[i] - one[i]);
+    one[i] += moved;
+    two[i] -= moved;
+  }
+}
+
 EventHistogram EventHistogram::Warped(const Eigen::Matrix2d& linear, const Eigen::Vector2d& perspective) const {
   EventHistogram warped(radius_, planes_);
   const Eigen::Matrix2f inverse = linear.inverse().cast<float>();

@@ -49,6 +49,8 @@ class EventHistogram {
   }
   /// Adds many events, each of weight 1.
   void Vote(std::span<const float> x, std::span<const float> y, std::span<const std::int8_t> polarity);
+  /// Exchanges the given ratio of each cell between the two planes.
+  void ExchangePlanes(std::span<const float> ratios);
   /// The histogram in other coordinates: a cell at u moves to `linear` * u / (1 + `perspective` . u).
   EventHistogram Warped(const Eigen::Matrix2d& linear,
                         const Eigen::Vector2d& perspective = Eigen::Vector2d::Zero()) const;

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "tracking/patch/em_alignment.hpp"
+#include "tracking/patch/event_histogram.hpp"
+
+namespace evo::tracking {
+
+/// Velocity of the template's points in template coordinates: a point u moves with at_centre + rate * u.
+struct TemplateVelocity {
+  Eigen::Vector2d at_centre = Eigen::Vector2d::Zero();  ///< px/s
+  Eigen::Matrix2d rate = Eigen::Matrix2d::Zero();       ///< 1/s
+
+  /// The velocity where coordinates are `linear` * u.
+  TemplateVelocity Transformed(const Eigen::Matrix2d& linear) const;
+};
+
+TemplateVelocity VelocityInTemplate(const PatchMotion& motion);
+
+/// An edge with brightness gradient g that moves with v makes events of the sign of -g . v (G. Gallego et al.:
+/// Event-based Vision: A Survey, PAMI 2022, equation 3), so its polarity flips where g . v changes its sign: where the
+/// edge's direction lies between those of the two velocities. This is the probability of it, for each cell of a
+/// histogram, from the cell's edge direction.
+class PolarityFlips {
+ public:
+  /// Whether any polarity may flip between the two velocities. `sigma_px_s`: standard deviation of `present`.
+  static bool MayOccur(const TemplateVelocity& reference, const TemplateVelocity& present, double sigma_px_s,
+                       double radius_px);
+
+  /// Finds the edges in the events of `histogram`, of both polarities together.
+  void FindEdges(const EventHistogram& histogram);
+  void Update(const TemplateVelocity& reference, const TemplateVelocity& present, double sigma_px_s);
+  /// Exchanges the two planes of a histogram in proportion to the probabilities.
+  void Apply(EventHistogram* histogram) const;
+
+ private:
+  int side_ = 0;
+  std::vector<float> normal_x_, normal_y_;  // of the edges; of any sign
+  std::vector<float> probability_;
+};
+
+}  // namespace evo::tracking
