@@ -35,8 +35,8 @@ void FeatureAligner::Align(const events::EventHistory& history, TimeNs t, double
   }
   if (Fit(feature, Association::kFine, alignment) || Fit(feature, Association::kCoarseToFine, alignment)) {
     alignment->state = State::kAligned;
-  } else if (alignment->events.size() < static_cast<std::size_t>(options_.min_events) && MayRest(feature, *alignment)) {
-    alignment->state = State::kResting;  // so few events are noise
+  } else if (MayRest(feature, *alignment)) {
+    alignment->state = State::kResting;
   }
 }
 
@@ -108,8 +108,10 @@ bool FeatureAligner::Fit(const TrackedFeature& feature, Association association,
   alignment->self_bias.reset();
   if (!has_flipped) alignment->self_bias = bias;
   const AlignmentQuality quality = align(bias, options_.iterations, true);
+  alignment->log_likelihood_ratio = MeanLogLikelihoodRatio(alignment->events, table, histogram.planes(), motion);
   alignment->outlier_ratio = 1.0 - quality.inlier_ratio;
-  return IsPlausible(quality, feature, motion);
+  return alignment->log_likelihood_ratio >= options_.min_log_likelihood_ratio &&
+         IsPlausible(quality, feature, motion);
 }
 
 bool FeatureAligner::IsPlausible(const AlignmentQuality& quality, const TrackedFeature& feature,

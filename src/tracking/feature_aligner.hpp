@@ -18,7 +18,7 @@ namespace evo::tracking {
 struct FeatureAlignment {
   enum class State {
     kAligned,
-    kResting,  ///< too slow to cause events: the feature stays where it is predicted
+    kResting,  ///< too slow to cause events of its own: the feature stays where it is predicted
     kLost,
   };
   State state = State::kLost;
@@ -29,7 +29,8 @@ struct FeatureAlignment {
   TimeNs half_window = 0;
   events::LocalEvents events;
   double outlier_ratio = 0.0;  ///< mean probability that an event does not belong to the template
-  double flow_sigma_px_s = 0.0;  ///< standard deviation of the predicted flow
+  double log_likelihood_ratio = 0.0;  ///< of the template, see MeanLogLikelihoodRatio
+  double flow_sigma_px_s = 0.0;       ///< standard deviation of the predicted flow
   std::optional<SelfBias> self_bias;  ///< of the template, see AssociationTable; empty if its polarities have flipped
 
   bool is_aligned() const { return state == State::kAligned; }
@@ -53,6 +54,8 @@ class FeatureAligner {
   /// motion so far does not predict.
   void Align(const events::EventHistory& history, TimeNs t, double step_s, const RotationCorrection& correction,
              const TrackedFeature& feature, FeatureAlignment* alignment) const;
+  /// Whether a feature without an alignment may keep its predicted position, since it hardly moves.
+  bool MayRest(const TrackedFeature& feature, const FeatureAlignment& alignment) const;
 
  private:
   enum class Association {
@@ -69,7 +72,6 @@ class FeatureAligner {
   /// does not explain the events.
   bool Fit(const TrackedFeature& feature, Association association, FeatureAlignment* alignment) const;
   bool IsPlausible(const AlignmentQuality& quality, const TrackedFeature& feature, const PatchMotion& aligned) const;
-  bool MayRest(const TrackedFeature& feature, const FeatureAlignment& alignment) const;
 
   TrackerOptions options_;
   const EgoMotion& ego_motion_;

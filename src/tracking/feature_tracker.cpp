@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "evo/core/median.hpp"
+
 namespace evo::tracking {
 
 namespace {
@@ -31,6 +33,7 @@ void FeatureTracker::Track(const events::EventHistory& history, TimeNs t) {
   t_ = t;
   AlignFeatures(history, {});  // EM 2: E step by AssociationTable (equations 6 to 9), M step by AlignToTemplate
   if (options_.rotation_correction) CorrectRotation(history);
+  GateInnovations();
   AdvanceFeatures(FilterPositions());
 }
 
@@ -87,6 +90,21 @@ void FeatureTracker::CorrectRotation(const events::EventHistory& history) {
   }
 }
 
+void FeatureTracker::GateInnovations() {
+  std::vector<double> innovations;
+  for (std::size_t i = 0; i < features_.size(); ++i) {
+    if (alignments_[i].is_aligned()) innovations.push_back(alignments_[i].aligned.offset.norm());
+  }
+  if (innovations.empty()) return;
+  const double max_innovation_px = options_.min_innovation_gate_px + options_.innovation_gate * Median(innovations);
+  for (std::size_t i = 0; i < features_.size(); ++i) {
+    FeatureAlignment& alignment = alignments_[i];
+    if (!alignment.is_aligned() || alignment.aligned.offset.norm() <= max_innovation_px) continue;
+    alignment.state = aligner_.MayRest(features_[i], alignment) ? FeatureAlignment::State::kResting
+                                                                : FeatureAlignment::State::kLost;
+  }
+}
+
 std::vector<PredictionResidual> FeatureTracker::PredictionResiduals() const {
   std::vector<PredictionResidual> residuals;
   for (std::size_t i = 0; i < features_.size(); ++i) {
@@ -120,7 +138,10 @@ void FeatureTracker::AdvanceFeatures(const std::vector<Eigen::Vector2d>& filtere
     if (alignments_[i].state == FeatureAlignment::State::kLost) return;
     AdvanceFeature(alignments_[i], &features_[i]);
     features_[i].state.filtered_position = filtered_positions[i];
-    is_alive[i] = area_.Contains(features_[i].state.position) ? 1 : 0;
+    is_alive[i] = area_.Contains(features_[i].state.position) &&
+                          features_[i].template_evidence.IsEnough(options_.min_log_likelihood_ratio)
+                      ? 1
+                      : 0;
   };
   pool_->ForEach(features_.size(), advance, kChunk);
   std::size_t kept = 0;
@@ -140,6 +161,10 @@ void FeatureTracker::AdvanceFeature(const FeatureAlignment& alignment, TrackedFe
   state.shape = {motion.linear, motion.perspective};
   feature->window.half = alignment.half_window;
   feature->event_template.AddTime(step_s_);
+  // Fewer events than that tell nothing of a feature at rest.
+  if (alignment.is_aligned() || alignment.events.size() >= static_cast<std::size_t>(options_.min_events)) {
+    feature->template_evidence.Add(alignment.log_likelihood_ratio);
+  }
   if (!alignment.is_aligned()) {
     state.flow = kRestingFlowDecay * motion.flow;
     feature->window.measured_flow = state.flow;

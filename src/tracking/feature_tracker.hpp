@@ -44,6 +44,8 @@ class FeatureTracker : public Tracker {
   /// Aligns all features again if they share an unpredicted rotation.
   void CorrectRotation(const events::EventHistory& history);
   std::vector<PredictionResidual> PredictionResiduals() const;
+  /// Rejects alignments that are much farther from their prediction than those of most features.
+  void GateInnovations();
   /// The reported positions of all features, px.
   std::vector<Eigen::Vector2d> FilterPositions();
   /// Takes the alignments over into the features and removes the lost ones.

@@ -9,6 +9,7 @@ namespace {
 constexpr double kDepthGain = 0.25;           // of one frame, after the first few
 constexpr double kGradientGain = 0.1;         // of one frame: a change of shape is noisier than a flow
 constexpr double kMaxGradientPerFlow = 1e-3;  // 1/px^2; a steeper plane is seen edge-on, or not a plane
+constexpr double kEvidenceGain = 0.2;         // of one window
 
 }  // namespace
 
@@ -22,6 +23,10 @@ void SurfaceEstimate::CorrectGradient(const Eigen::Vector2d& correction, double 
   const double max_norm = kMaxGradientPerFlow * flow_px_s;
   const double norm = gradient_.norm();
   if (norm > max_norm) gradient_ *= max_norm / norm;
+}
+
+void TemplateEvidence::Add(double log_likelihood_ratio) {
+  mean_ += std::max(kEvidenceGain, 1.0 / ++windows_) * (log_likelihood_ratio - mean_);
 }
 
 std::vector<FlowSample> FlowSamples(const std::vector<TrackedFeature>& features) {

@@ -50,6 +50,19 @@ struct FeatureWindow {
   Eigen::Vector2d measured_flow;  ///< px/s, by its events alone
 };
 
+/// How well the template has explained the events of the last windows, against noise.
+class TemplateEvidence {
+ public:
+  /// Adds a window. `log_likelihood_ratio`: see MeanLogLikelihoodRatio.
+  void Add(double log_likelihood_ratio);
+  /// Whether the mean is at least `min_log_likelihood_ratio`, nats an event; true before the first window.
+  bool IsEnough(double min_log_likelihood_ratio) const { return windows_ == 0 || mean_ >= min_log_likelihood_ratio; }
+
+ private:
+  int windows_ = 0;
+  double mean_ = 0.0;  // over the last windows, nats an event
+};
+
 /// A live feature.
 struct TrackedFeature {
   std::int64_t id = 0;
@@ -59,6 +72,7 @@ struct TrackedFeature {
   SurfaceEstimate surface;
   FeatureTemplate event_template;
   OutlierEvidence outlier_evidence = {};
+  TemplateEvidence template_evidence = {};
 };
 
 std::vector<FlowSample> FlowSamples(const std::vector<TrackedFeature>& features);

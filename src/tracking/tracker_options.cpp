@@ -66,10 +66,16 @@ void RegisterCameraMotion(Parameters& parameters, TrackerOptions& o) {
 void RegisterLoss(Parameters& parameters, TrackerOptions& o) {
   parameters.Add("tracker.min_inlier_ratio", &o.min_inlier_ratio, 0.0, 1.0,
                  "minimum ratio of a window's events that the template explains");
+  parameters.Add("tracker.min_log_likelihood_ratio", &o.min_log_likelihood_ratio, -10.0, 10.0,
+                 "minimum log likelihood ratio of the template against noise, of a window and over the last windows (nats an event)");
   parameters.Add("tracker.max_residual_px", &o.max_residual_px, 0.1, 20.0,
                  "maximum root mean square residual of an alignment (px)");
   parameters.Add("tracker.max_prediction_error_px", &o.max_prediction_error_px, 0.5, 50.0,
                  "maximum distance from the predicted to the aligned position (px)");
+  parameters.Add("tracker.innovation_gate", &o.innovation_gate, 1.0, 1000.0,
+                 "maximum distance from the predicted to the aligned position over the median of all features");
+  parameters.Add("tracker.min_innovation_gate_px", &o.min_innovation_gate_px, 0.0, 50.0,
+                 "added to that maximum distance (px)");
   parameters.Add("tracker.max_scale", &o.max_scale, 1.1, 100.0,
                  "maximum scale, or its inverse, of a patch relative to its first window");
   parameters.Add("tracker.border_px", &o.border_px, 1.0, 100.0,

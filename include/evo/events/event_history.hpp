@@ -23,6 +23,12 @@ struct LocalEvents {
 
   std::size_t size() const { return x.size(); }
   void resize(std::size_t count);
+  void push_back(float event_x, float event_y, float event_dt, std::int8_t event_polarity) {
+    x.push_back(event_x);
+    y.push_back(event_y);
+    dt.push_back(event_dt);
+    polarity.push_back(event_polarity);
+  }
   /// Keeps an even sample of at most `max_count` events.
   void Subsample(std::size_t max_count);
 };

@@ -56,8 +56,11 @@ struct TrackerOptions {
 
   // Loss of a feature.
   double min_inlier_ratio = 0.3;
+  double min_log_likelihood_ratio = 0.3;
   double max_residual_px = 2.0;
   double max_prediction_error_px = 6.0;
+  double innovation_gate = 6.0;
+  double min_innovation_gate_px = 0.5;
   double max_scale = 3.0;
   double border_px = 3.0;
 
@@ -67,7 +70,7 @@ struct TrackerOptions {
   double corner_quality_ratio = 0.05;
   double corner_min_quality_ratio = 0.02;
   double corner_window_motion_px = 3.0;
-  double uninformative_ratio = 0.55;
+  double uninformative_ratio = 0.45;
   double rejection_ratio = 0.03;
   double min_expected_lifetime_s = 0.12;
   double min_template_area_px = 8.0;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "tracking/detection/corner_detector.hpp"
@@ -20,27 +21,54 @@ constexpr int kTemplateMarginPx = 4;           // the template exceeds the patch
 constexpr double kCandidatesPerFeature = 1.5;  // corners tried for each missing feature: many do not become one
 constexpr double kInformationSigmaPx = 1.0;    // standard deviation of the densities that are asked for information
 constexpr double kInformationOutlierDensityRatio = 0.2;
+// Log likelihood ratio of each half of a window under the other, nats an event: that of noise is negative.
+constexpr double kMinCrossLikelihoodRatio = 0.1;
 constexpr std::size_t kMaxRecent = 200;  // candidates to compare with: enough for a quantile, few enough to be recent
 
-/// Information of an event in the direction in which the events constrain the position least, as far as both halves of
-/// the window agree: neither noise nor a pattern that changes its shape constrains a position. 1/px^2.
-double SmallestInformation(const events::LocalEvents& events, const PatchMotion& motion, const EventHistogram& all) {
-  thread_local TemplatePoints points;
-  thread_local std::array<AssociationTable, 2> tables;
-  points.Update(events, motion);
-  std::array<EventHistogram, 2> halves{EventHistogram(all.radius(), all.planes()),
-                                       EventHistogram(all.radius(), all.planes())};
-  for (std::size_t i = 0; i < events.size(); ++i) {
-    EventHistogram& half = halves[events.dt[i] > 0.0f ? 1 : 0];
-    half.Vote(points.u[i], points.v[i], half.PlaneOf(events.polarity[i]), 1.0f);
+/// What the two halves of a window tell of each other: a moving pattern repeats itself, noise does not.
+class WindowHalves {
+ public:
+  WindowHalves(int radius_px, int planes)
+      : histograms_{EventHistogram(radius_px, planes), EventHistogram(radius_px, planes)} {}
+
+  /// Memory that each thread keeps.
+  static WindowHalves& ForThread(int radius_px, int planes) {
+    thread_local std::map<std::pair<int, int>, WindowHalves> halves;
+    return halves.try_emplace({radius_px, planes}, radius_px, planes).first->second;
   }
-  for (std::size_t i = 0; i < halves.size(); ++i) {
-    tables[i].Build(halves[i], kInformationSigmaPx, kInformationOutlierDensityRatio);
+
+  void Split(const events::LocalEvents& events, const PatchMotion& motion) {
+    for (std::size_t i = 0; i < events_.size(); ++i) {
+      events_[i].resize(0);
+      histograms_[i].Clear();
+    }
+    for (std::size_t i = 0; i < events.size(); ++i) {
+      events_[events.dt[i] > 0.0f ? 1 : 0].push_back(events.x[i], events.y[i], events.dt[i], events.polarity[i]);
+    }
+    for (std::size_t i = 0; i < events_.size(); ++i) {
+      Accumulate(events_[i], motion, &histograms_[i]);
+      tables_[i].Build(histograms_[i], kInformationSigmaPx, kInformationOutlierDensityRatio);
+    }
   }
-  const Eigen::Matrix2d information = tables[0].Information(all, tables[1]);
-  const double mean = 0.5 * information.trace();
-  return mean - std::sqrt(std::max(0.0, mean * mean - information.determinant()));  // the smaller eigenvalue
-}
+
+  /// Information of an event of `all` in the direction in which the events constrain the position least, as far as the
+  /// halves agree, 1/px^2.
+  double SmallestInformation(const EventHistogram& all) const {
+    const Eigen::Matrix2d information = tables_[0].Information(all, tables_[1]);
+    const double mean = 0.5 * information.trace();
+    return mean - std::sqrt(std::max(0.0, mean * mean - information.determinant()));  // the smaller eigenvalue
+  }
+  /// Log likelihood ratio of the events of each half under the pattern of the other: the mean of both, nats an event.
+  double LogLikelihoodRatio(const PatchMotion& motion) const {
+    return 0.5 * (MeanLogLikelihoodRatio(events_[0], tables_[1], histograms_[1].planes(), motion) +
+                  MeanLogLikelihoodRatio(events_[1], tables_[0], histograms_[0].planes(), motion));
+  }
+
+ private:
+  std::array<EventHistogram, 2> histograms_;
+  std::array<events::LocalEvents, 2> events_;
+  std::array<AssociationTable, 2> tables_;
+};
 
 }  // namespace
 
@@ -123,7 +151,10 @@ std::optional<FeatureInitializer::Candidate> FeatureInitializer::MakeCandidate(
   EventHistogram histogram(options_.patch_radius_px + kTemplateMarginPx, options_.use_polarity ? 2 : 1);
   Accumulate(events, motion, &histogram);
   if (histogram.EffectiveCells() < options_.min_template_area_px) return std::nullopt;
-  const double information = SmallestInformation(events, motion, histogram);
+  WindowHalves& halves = WindowHalves::ForThread(histogram.radius(), histogram.planes());
+  halves.Split(events, motion);
+  if (halves.LogLikelihoodRatio(motion) < kMinCrossLikelihoodRatio) return std::nullopt;
+  const double information = halves.SmallestInformation(histogram);
   return Candidate{.feature = {.state = {position, position, flow, {}},
                                .window = {half_window, flow},
                                .surface = {inverse_depth, gradient},

@@ -37,6 +37,7 @@ class DensitySmoother {
         const double epanechnikov = std::max(0.0, 1.0 - distance * distance);
         const double weight = weighting == AssociationTable::Weighting::kUniform ? 1.0 : epanechnikov * epanechnikov;
         weights_[static_cast<std::size_t>(r * width_ + c)] = static_cast<float>(weight);
+        total_weight_ += static_cast<float>(weight);
       }
     }
   }
@@ -57,6 +58,7 @@ class DensitySmoother {
   const float* density() const { return smooth_.data() + margin_ * width_; }  ///< side rows of width() cells
   const float* weights() const { return weights_.data(); }                    ///< side rows of width() cells
   int width() const { return width_; }
+  float total_weight() const { return total_weight_; }
 
  private:
   int side_;
@@ -64,6 +66,7 @@ class DensitySmoother {
   int margin_;  // empty rows above and below the plane, and the least number of empty cells between two rows
   int width_;   // cells in a row of the members that follow
   std::vector<float> plane_, rows_, smooth_, weights_;
+  float total_weight_ = 0.0f;
 };
 
 struct ShiftModel {
@@ -72,10 +75,12 @@ struct ShiftModel {
   float max_shift;        // cells
 };
 
-/// Fills in one plane of a table of `side` x `side` cells. Writes up to seven cells beyond the end of a row.
-EVO_HOT void TabulateAssociations(const float* density, const float* weights, int width, int side,
-                                  const ShiftModel& model, float* table) {
+/// Fills in one plane of a table of `side` x `side` cells. Writes up to seven cells beyond the end of a row. Returns the
+/// sum of density x weight.
+EVO_HOT float TabulateAssociations(const float* density, const float* weights, int width, int side,
+                                   const ShiftModel& model, float* table) {
   const auto [outlier_density, half_variance, max_shift] = model;
+  F32x8 sum{};
   for (int r = 1; r + 1 < side; ++r) {
     for (int c = 0; c < side; c += kLanes) {
       const float* const at = density + r * width + c;
@@ -97,8 +102,10 @@ EVO_HOT void TabulateAssociations(const float* density, const float* weights, in
       y = y < -limit ? -limit : y;
       y = y > limit ? limit : y;
       StoreRows({inlier, x, y, weight}, table + 4 * (r * side + c));
+      sum += weight * middle;
     }
   }
+  return Sum(sum);
 }
 
 /// Sums of votes x association x (1, u, v) over the cells of a plane that lie in the patch.
@@ -180,8 +187,10 @@ void AssociationTable::Build(const EventHistogram& histogram, double sigma_px, d
       .max_shift = static_cast<float>(kMaxShiftSigmas * sigma_px)};
   for (int p = 0; p < histogram.planes(); ++p) {
     smoother.Smooth(histogram.plane(p));
-    TabulateAssociations(smoother.density(), smoother.weights(), smoother.width(), side_, model,
-                         cells_[static_cast<std::size_t>(p * side_ * side_)].data());
+    const float sum = TabulateAssociations(smoother.density(), smoother.weights(), smoother.width(), side_, model,
+                                           cells_[static_cast<std::size_t>(p * side_ * side_)].data());
+    log_even_densities_[static_cast<std::size_t>(p)] =
+        std::log1p(sum / (smoother.total_weight() * model.outlier_density));
   }
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
 #include <vector>
 
 #include "evo/core/bilinear.hpp"
@@ -33,6 +35,8 @@ class AssociationTable {
 
   int radius() const { return radius_; }
   int side() const { return side_; }
+  /// Logarithm of the density, over that of the outliers alone, of events that are spread evenly over a plane.
+  float log_even_density(int plane) const { return log_even_densities_[static_cast<std::size_t>(plane)]; }
   /// All cells, row by row and plane by plane. Zero at the edge of a plane, and for more than a row after the last.
   const Association* cells() const { return cells_.data(); }
   /// The association of an event at (x, y); zero outside.
@@ -62,6 +66,7 @@ class AssociationTable {
   int radius_ = 0;
   int side_ = 0;
   double sigma_px_ = 1.0;
+  std::array<float, 2> log_even_densities_{};
   std::vector<Association> cells_;
 };
 

@@ -116,6 +116,37 @@ EVO_HOT void SumMoments(const events::LocalEvents& events, const InverseMotion& 
            Sum(sum_y), Sum(yt),  Sum(yu),  Sum(yv),    Sum(squares), Sum(all_weight)};
 }
 
+EVO_HOT void SumLogLikelihoods(const events::LocalEvents& events, const InverseMotion& motion,
+                               const AssociationTable& table, int planes, float* sum, float* sum_of_weights) {
+  F32x8 total{}, total_weight{};
+  const std::int32_t negative_offset = planes == 2 ? table.side() * table.side() : 0;
+  const float even[2] = {table.log_even_density(0), table.log_even_density(planes - 1)};
+  const F32x8 epsilon = F32x8{} + 1e-30f;
+  const F32x8 min_outlier = F32x8{} + 1e-6f;
+  for (std::size_t begin = 0; begin < events.size(); begin += kLanes) {
+    F32x8 event_x, event_y, dt;
+    Load(events.x, begin, kOutsidePx, &event_x);
+    Load(events.y, begin, kOutsidePx, &event_y);
+    Load(events.dt, begin, 0.0f, &dt);
+    std::int32_t plane_offsets[kLanes];
+    FindPlaneOffsets(events.polarity, begin, negative_offset, plane_offsets);
+    F32x8 u, v;
+    motion.ToTemplate(event_x, event_y, dt, &u, &v);
+    Columns8 associations;
+    InterpolateAssociations(table, u, v, plane_offsets, &associations);
+    const F32x8& weight = associations.d;
+    // The outlier probability is D0 / (D + D0).
+    const F32x8 outlier = 1.0f - associations.a / (weight > epsilon ? weight : epsilon);
+    F32x8 log_outlier, log_even;
+    Log(outlier > min_outlier ? outlier : min_outlier, &log_outlier);
+    for (int i = 0; i < kLanes; ++i) log_even[i] = even[plane_offsets[i] != 0];
+    total -= weight * (log_outlier + log_even);
+    total_weight += weight;
+  }
+  *sum = Sum(total);
+  *sum_of_weights = Sum(total_weight);
+}
+
 Moments Expect(const events::LocalEvents& events, const AssociationTable& table, int planes,
                const AlignmentOptions& options, const PatchMotion& motion) {
   MomentSums s;
@@ -198,6 +229,14 @@ AlignmentQuality AlignToTemplate(const events::LocalEvents& events, const Associ
     if (converged) break;
   }
   return quality;
+}
+
+double MeanLogLikelihoodRatio(const events::LocalEvents& events, const AssociationTable& table, int planes,
+                              const PatchMotion& motion) {
+  float sum = 0.0f;
+  float weight = 0.0f;
+  SumLogLikelihoods(events, InverseMotion(motion), table, planes, &sum, &weight);
+  return weight > 0.0f ? static_cast<double>(sum / weight) : 0.0;
 }
 
 }  // namespace evo::tracking

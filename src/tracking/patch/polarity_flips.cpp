@@ -100,7 +100,7 @@ void PolarityFlips::FindEdges(const EventHistogram& histogram) {
       const float length = std::sqrt(difference * difference + 4.0f * xy[i] * xy[i]);
       const float cosine = length > 0.0f ? difference / length : 1.0f;
       const auto cell = static_cast<std::size_t>(r * side_ + c);
-      normal_x_[cell] = std::sqrt(0.5f * (1.0f + cosine));
+      normal_x_[cell] = std::sqrt(0.5f * std::max(0.0f, 1.0f + cosine));
       normal_y_[cell] = std::copysign(std::sqrt(0.5f * std::max(0.0f, 1.0f - cosine)), xy[i]);
     }
   }

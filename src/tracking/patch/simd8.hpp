@@ -40,6 +40,20 @@ EVO_INLINE void Store(const F32x8& from, float* to) { std::memcpy(to, &from, siz
 
 EVO_INLINE float Sum(const F32x8& a) { return ((a[0] + a[4]) + (a[2] + a[6])) + ((a[1] + a[5]) + (a[3] + a[7])); }
 
+/// Natural logarithm of positive normal numbers, with an error of at most 2e-4.
+EVO_INLINE void Log(const F32x8& x, F32x8* logarithm) {
+  I32x8 bits;
+  std::memcpy(&bits, &x, sizeof(bits));
+  const F32x8 exponent = __builtin_convertvector((bits >> 23) - 127, F32x8);
+  bits = (bits & 0x7fffff) | 0x3f800000;
+  F32x8 mantissa;  // in [1, 2)
+  std::memcpy(&mantissa, &bits, sizeof(mantissa));
+  // The polynomial of degree 4 that deviates least from the base-2 logarithm at its Chebyshev nodes.
+  const F32x8 log2 =
+      exponent + ((((-0.0784406762f * mantissa + 0.626032182f) * mantissa + -2.07833517f) * mantissa + 4.02921139f) * mantissa + -2.49835315f);
+  *logarithm = 0.69314718f * log2;
+}
+
 /// Splits eight lanes into the first and the last four.
 EVO_INLINE void Split(const F32x8& all, F32x4* first, F32x4* last) {
   *first = __builtin_shufflevector(all, all, 0, 1, 2, 3);
