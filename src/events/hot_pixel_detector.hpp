@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <unordered_map>
@@ -43,11 +42,10 @@ class HotPixelDetector {
   TimeNs known_until() const { return known_until_; }
 
  private:
-  /// The polarities of a pixel that may become hot. Entries: positive, negative.
+  /// The last polarities of a pixel that may become hot: the newest in the lowest bit, 1 for positive.
   struct Watch {
-    std::array<std::uint32_t, 2> events{};
-    std::array<std::uint32_t, 2> repeats{};  // events after one of the same polarity
-    std::int8_t last = 0;
+    std::uint64_t polarities = 0;
+    int events = 0;  // at most 64
   };
 
   void Count(const EventColumns& events, std::size_t begin, std::size_t end);
@@ -57,7 +55,7 @@ class HotPixelDetector {
   void AddStep();
   void Judge(std::size_t cell, std::vector<Change>* changes);
   bool IsHot(std::size_t cell) const;
-  /// Whether the polarities follow one another at random, or are all the same.
+  /// Whether the polarities are in random order, or all the same.
   static bool IsRandom(const Watch& watch);
   void SetHot(std::size_t cell, bool is_hot, std::vector<Change>* changes);
   /// Quiet rate in events a bin.
