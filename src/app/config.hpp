@@ -1,8 +1,8 @@
 #pragma once
 
 #include "evo/core/parameters.hpp"
-#include "evo/events/event_filter_options.hpp"
 #include "evo/evaluation/evaluation_options.hpp"
+#include "evo/events/event_filter_options.hpp"
 #include "evo/odometry/odometry_options.hpp"
 #include "evo/tracking/tracker_options.hpp"
 

@@ -39,8 +39,7 @@ events::Interval ParseInterval(const RecordingArguments& arguments) {
   return interval;
 }
 
-events::IgnoredPixels ReadIgnoredPixels(const RecordingArguments& arguments, int width, int height,
-                                        RunRecord* record) {
+events::IgnoredPixels ReadIgnoredPixels(const RecordingArguments& arguments, int width, int height, RunRecord* record) {
   events::IgnoredPixels ignored;
   if (!arguments.mask.empty()) {
     ignored.masked = io::ReadMask(arguments.mask, width, height);

@@ -136,8 +136,8 @@ void FilteredEventReader::ApplyHotPixels(EventColumns* block) {
       hot_pixels_ += change.is_hot ? 1 : std::size_t(-1);
     }
     const auto first = block->t.begin() + static_cast<std::ptrdiff_t>(begin);
-    const auto end = static_cast<std::size_t>(std::lower_bound(first, block->t.end(), changes_->NextStamp()) -
-                                              block->t.begin());
+    const auto end =
+        static_cast<std::size_t>(std::lower_bound(first, block->t.end(), changes_->NextStamp()) - block->t.begin());
     if (hot_pixels_ == 0 && kept == begin) {
       kept = end;
     } else {

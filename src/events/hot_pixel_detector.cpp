@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -14,20 +13,24 @@ namespace {
 constexpr TimeNs kBin = 10'000'000;  // ns; longer than an edge takes from a pixel to the next, short enough to be quiet
 constexpr int kStepBins = 25;        // 0.25 s
 constexpr std::uint8_t kWatched = 0x80;
-constexpr std::uint8_t kMaxBinEvents = 8;     // 25 such bins fit into a byte
-constexpr float kMemory = 15.0F / 16.0F;      // a step's weight against the next one's: sums reach back 4 s
-constexpr float kMaxStepEvents = 8.0F;        // of lasting_events_: a burst is not lasting
-constexpr float kMinLastingEvents = 24.0F;    // three such steps: an edge leaves no more than a few dozen events at once
+constexpr std::uint8_t kMaxBinEvents = 8;   // 25 such bins fit into a byte
+constexpr float kMemory = 15.0F / 16.0F;    // a step's weight against the next one's: sums reach back 4 s
+constexpr float kMaxStepEvents = 8.0F;      // of lasting_events_: a burst is not lasting
+constexpr float kMinLastingEvents = 24.0F;  // three such steps: an edge leaves no more than a few dozen events at once
 constexpr float kMinRecurringEvents = 12.0F;  // of a pixel that was hot before
-constexpr float kMinWatchedEvents = 8.0F;
+constexpr float kMinLivelyEvents = 8.0F;
 constexpr float kSigmas = 3.0F;          // by which the counted rate exceeds the minimum
 constexpr float kMinExcessRatio = 0.5F;  // of the events that its rate lets expect, beyond what the neighbours have
-constexpr int kMinPolarities = 24;
+constexpr std::size_t kMinWatchedEvents = 24;
 constexpr double kMaxOnePolarity = 0.05;  // ratio of the rarer one up to which there is but one
-// Kuiper's statistic of the order of both polarities: 1.25 +- 0.27 if it is random; at a vibrating edge, which takes each
-// change back, the number of events lowers it to 0.2-0.5.
+// Kuiper's statistic of the order of both polarities: 1.25 +- 0.27 if it is random; at a vibrating edge, which takes
+// each change back, the number of events lowers it to 0.2-0.5.
 constexpr double kMinKuiper = 0.7;
-constexpr float kReleaseRatio = 0.5F;  // of the minimum rate
+// Ratio of intervals shorter than a quarter of the mean: 0.22 of random events, 0 of periodic ones, about 0.5 where
+// edges make several events each.
+constexpr double kMaxShortRatio = 1.0 / 3.0;
+constexpr TimeNs kPause = 250'000'000;  // ns; longer ones are no intervals: a pixel may come and go
+constexpr float kReleaseRatio = 0.5F;   // of the minimum rate
 constexpr std::uint8_t kHot = 1;
 constexpr std::uint8_t kWasHot = 2;
 constexpr TimeNs kNever = std::numeric_limits<TimeNs>::max();
@@ -35,7 +38,8 @@ constexpr TimeNs kNever = std::numeric_limits<TimeNs>::max();
 }  // namespace
 
 void Register(Parameters& parameters, HotPixelOptions& o) {
-  parameters.Add("events.hot_pixels.detect", &o.detect, "find pixels that fire by themselves and leave their events out");
+  parameters.Add("events.hot_pixels.detect", &o.detect,
+                 "find pixels that fire by themselves and leave their events out");
   parameters.Add("events.hot_pixels.min_rate_hz", &o.min_rate_hz, 1.0, 1e5,
                  "minimum rate of a hot pixel while its neighbours are quiet (events/s)");
   parameters.Add("events.hot_pixels.rate_ratio", &o.rate_ratio, 1.0, 1000.0,
@@ -98,8 +102,9 @@ void HotPixelDetector::Count(const EventColumns& events, std::size_t begin, std:
     count[cell] = static_cast<std::uint8_t>(value + ((value & 0x7F) < 0x7F ? 1 : 0));
     if (value & kWatched) [[unlikely]] {
       Watch& watch = watches_[cell + stride_ + 1];
-      watch.polarities = watch.polarities << 1 | (events.polarity[i] > 0 ? 1 : 0);
-      watch.events = std::min(watch.events + 1, 64);
+      const std::size_t place = watch.events++ % Watch::kMaxEvents;
+      watch.t[place] = events.t[i];
+      watch.polarity[place] = events.polarity[i];
     }
   }
 }
@@ -144,7 +149,7 @@ void HotPixelDetector::AddStep() {
     quiet_events_[i] = kMemory * quiet_events_[i] + events;
     all_events_[i] = kMemory * all_events_[i] + static_cast<float>(step_all_[i]);
     lasting_events_[i] = kMemory * lasting_events_[i] + std::min(events, kMaxStepEvents);
-    const bool is_lively = lasting_events_[i] >= kMinWatchedEvents && quiet_events_[i] >= min_rate_ * quiet_bins_[i];
+    const bool is_lively = lasting_events_[i] >= kMinLivelyEvents && quiet_events_[i] >= min_rate_ * quiet_bins_[i];
     look_at_[i] = static_cast<std::uint8_t>(is_lively | count_[i] | (is_hot_[i] & kHot));
   }
 }
@@ -175,12 +180,13 @@ void HotPixelDetector::Judge(std::size_t cell, std::vector<Change>* changes) {
     if (rate < kReleaseRatio * min_rate_) SetHot(cell, false, changes);
     return;
   }
-  if (rate < min_rate_ || lasting_events_[cell] < kMinWatchedEvents) {
+  if (rate < min_rate_ || lasting_events_[cell] < kMinLivelyEvents) {
     forget();
     return;
   }
   count_[cell] = kWatched;
-  if (IsHot(cell) && (is_hot_[cell] == kWasHot || IsRandom(watches_[cell]))) {
+  const Watch& watch = watches_[cell];
+  if (IsHot(cell) && (is_hot_[cell] == kWasHot || (!IsBursty(watch) && IsDisordered(watch)))) {
     SetHot(cell, true, changes);
     forget();
   }
@@ -214,21 +220,39 @@ bool HotPixelDetector::IsHot(std::size_t cell) const {
          all_events_[cell] - second_largest(events) >= kMinExcessRatio * rate * all_bins_;
 }
 
-bool HotPixelDetector::IsRandom(const Watch& watch) {
-  if (watch.events < kMinPolarities) return false;
-  const std::uint64_t all = watch.events == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << watch.events) - 1;
-  const int positive = std::popcount(watch.polarities & all);
-  const int negative = watch.events - positive;
-  if (std::min(positive, negative) <= kMaxOnePolarity * watch.events) return true;
+bool HotPixelDetector::IsBursty(const Watch& watch) {
+  TimeNs sum = 0;
+  int intervals = 0;
+  const auto for_each_interval = [&](const auto& visit) {
+    for (std::size_t i = 1; i < watch.size(); ++i) {
+      const TimeNs interval = watch.t[watch.Place(i)] - watch.t[watch.Place(i - 1)];
+      if (interval <= kPause) visit(interval);
+    }
+  };
+  for_each_interval([&](TimeNs interval) {
+    sum += interval;
+    ++intervals;
+  });
+  int short_intervals = 0;
+  for_each_interval([&](TimeNs interval) { short_intervals += 4 * intervals * interval < sum ? 1 : 0; });
+  return short_intervals > kMaxShortRatio * intervals;
+}
+
+bool HotPixelDetector::IsDisordered(const Watch& watch) {
+  const std::size_t events = watch.size();
+  if (events < kMinWatchedEvents) return false;
+  const auto positive = static_cast<double>(std::count(watch.polarity.begin(), watch.polarity.end(), std::int8_t{1}));
+  const double negative = static_cast<double>(events) - positive;
+  if (std::min(positive, negative) <= kMaxOnePolarity * static_cast<double>(events)) return true;
   double sum = 0.0;
   double highest = 0.0;
   double lowest = 0.0;
-  for (int i = 0; i < watch.events; ++i) {
-    sum += (watch.polarities >> i & 1) != 0 ? 1.0 / positive : -1.0 / negative;
+  for (std::size_t i = 0; i < events; ++i) {
+    sum += watch.polarity[watch.Place(i)] > 0 ? 1.0 / positive : -1.0 / negative;
     highest = std::max(highest, sum);
     lowest = std::min(lowest, sum);
   }
-  return std::sqrt(static_cast<double>(positive) * negative / watch.events) * (highest - lowest) >= kMinKuiper;
+  return std::sqrt(positive * negative / static_cast<double>(events)) * (highest - lowest) >= kMinKuiper;
 }
 
 void HotPixelDetector::SetHot(std::size_t cell, bool is_hot, std::vector<Change>* changes) {
@@ -236,8 +260,7 @@ void HotPixelDetector::SetHot(std::size_t cell, bool is_hot, std::vector<Change>
   counts_for_[cell] = is_hot ? 0 : 0xFF ^ kWatched;
   const std::size_t x = cell % stride_ - 1;
   const std::size_t y = cell / stride_ - 1;
-  changes->push_back(
-      {known_until_, static_cast<std::uint32_t>(y * static_cast<std::size_t>(width_) + x), is_hot});
+  changes->push_back({known_until_, static_cast<std::uint32_t>(y * static_cast<std::size_t>(width_) + x), is_hot});
 }
 
 }  // namespace evo::events

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <unordered_map>
@@ -19,7 +21,8 @@ namespace evo::events {
 /// - certainly above `min_rate_hz`, and `rate_ratio` times the second largest of its neighbours (one may be hot too),
 /// - what it has more than its neighbours in all: a slow edge makes them fire as much, only at other times,
 /// - high in several steps of 0.25 s, since a small object that moves is alone for a moment only,
-/// - made by events without the order of a vibrating edge, where each change is taken back by the next one.
+/// - made by events without the order that edges have: several within milliseconds, and, if the edge vibrates, each
+///   change taken back by the next one.
 /// It stays hot until its quiet rate falls well below `min_rate_hz`.
 ///
 /// Memory is that of the sensor. The decisions depend on the events alone, not on how they are cut into blocks.
@@ -42,10 +45,15 @@ class HotPixelDetector {
   TimeNs known_until() const { return known_until_; }
 
  private:
-  /// The last polarities of a pixel that may become hot: the newest in the lowest bit, 1 for positive.
+  /// The last events of a pixel that may become hot.
   struct Watch {
-    std::uint64_t polarities = 0;
-    int events = 0;  // at most 64
+    static constexpr std::size_t kMaxEvents = 128;
+    std::array<TimeNs, kMaxEvents> t{};
+    std::array<std::int8_t, kMaxEvents> polarity{};
+    std::size_t events = 0;  // since the watch began; the last one is at (events - 1) % kMaxEvents
+
+    std::size_t size() const { return std::min(events, kMaxEvents); }
+    std::size_t Place(std::size_t i) const { return (events - size() + i) % kMaxEvents; }  // of the i-th oldest
   };
 
   void Count(const EventColumns& events, std::size_t begin, std::size_t end);
@@ -55,8 +63,10 @@ class HotPixelDetector {
   void AddStep();
   void Judge(std::size_t cell, std::vector<Change>* changes);
   bool IsHot(std::size_t cell) const;
+  /// Whether the events come in bursts of a few milliseconds.
+  static bool IsBursty(const Watch& watch);
   /// Whether the polarities are in random order, or all the same.
-  static bool IsRandom(const Watch& watch);
+  static bool IsDisordered(const Watch& watch);
   void SetHot(std::size_t cell, bool is_hot, std::vector<Change>* changes);
   /// Quiet rate in events a bin.
   float QuietRate(std::size_t cell) const { return quiet_events_[cell] / (quiet_bins_[cell] + 1.0F); }
@@ -70,7 +80,7 @@ class HotPixelDetector {
 
   bool started_ = false;
   TimeNs bin_end_ = 0;
-  int bins_ = 0;            // of this step
+  int bins_ = 0;           // of this step
   float all_bins_ = 0.0F;  // with the same memory as the sums below
   TimeNs known_until_;
 
@@ -82,10 +92,10 @@ class HotPixelDetector {
   std::vector<std::uint8_t> step_all_;     // events in all bins
   std::vector<std::uint8_t> look_at_;
   std::vector<std::uint8_t> is_hot_;  // 0, kHot or kWasHot
-  std::vector<float> quiet_bins_;         // these four with an exponential memory
+  std::vector<float> quiet_bins_;     // these four with an exponential memory
   std::vector<float> quiet_events_;
   std::vector<float> all_events_;
-  std::vector<float> lasting_events_;     // at most kMaxStepEvents a step
+  std::vector<float> lasting_events_;               // at most kMaxStepEvents a step
   std::unordered_map<std::size_t, Watch> watches_;  // looked up by cell, never walked through
   std::vector<std::uint8_t> row_;
 };

@@ -41,7 +41,7 @@ class PngFile {
 
  private:
   Error Failure() const {
-    return {ErrorKind::kInput, path_ + ": cannot be read as PNG: " + image_.message + "; is the file cut short?"};
+    return {ErrorKind::kInput, path_ + ": cannot be read as PNG: " + image_.message + "; give a whole PNG image"};
   }
 
   std::string path_;

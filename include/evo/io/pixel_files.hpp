@@ -14,8 +14,8 @@ namespace evo::io {
 /// Throws Error (kInput) for a missing or damaged file, another size, and a mask that leaves no pixel.
 std::vector<std::uint8_t> ReadMask(const std::filesystem::path& path, int width, int height);
 
-/// Reads rows `x y`, further columns are not read; the result has y * width + x of each pixel. Throws Error (kInput) with
-/// file and line.
+/// Reads rows `x y`, further columns are not read; the result has y * width + x of each pixel. Throws Error (kInput)
+/// with file and line.
 std::vector<std::uint32_t> ReadHotPixels(const std::filesystem::path& path, int width, int height);
 
 /// Writes rows `x y rate_hz`, sorted by row, then column. Throws Error (kOutput).
