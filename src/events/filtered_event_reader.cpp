@@ -99,28 +99,39 @@ void FilteredEventReader::ReadAhead() {
 template <typename Rule>
 std::size_t FilteredEventReader::Compact(EventColumns* block, std::size_t begin, std::size_t end, std::size_t kept,
                                          Rule leaves_out) const {
-  TimeNs* const t = block->t.data();
-  std::uint16_t* const x = block->x.data();
-  std::uint16_t* const y = block->y.data();
-  std::int8_t* const polarity = block->polarity.data();
+  const std::uint16_t* const x = block->x.data();
+  const std::uint16_t* const y = block->y.data();
+  // Most events stay: whole stretches of them move at once.
+  const auto keep = [&](std::size_t from, std::size_t to) {
+    const auto move = [&](auto& column) {
+      std::copy(column.begin() + static_cast<std::ptrdiff_t>(from), column.begin() + static_cast<std::ptrdiff_t>(to),
+                column.begin() + static_cast<std::ptrdiff_t>(kept));
+    };
+    if (from != kept) {
+      move(block->t);
+      move(block->x);
+      move(block->y);
+      move(block->polarity);
+    }
+    kept += to - from;
+  };
+  std::size_t first = begin;  // of the stretch
   for (std::size_t i = begin; i < end; ++i) {
-    if (leaves_out(y[i] * width_ + x[i], t[i])) [[unlikely]]
+    if (!leaves_out(y[i] * width_ + x[i], i)) [[likely]]
       continue;
-    t[kept] = t[i];
-    x[kept] = x[i];
-    y[kept] = y[i];
-    polarity[kept] = polarity[i];
-    ++kept;
+    keep(first, i);
+    first = i + 1;
   }
+  keep(first, end);
   return kept;
 }
 
 void FilteredEventReader::ApplyMask(EventColumns* block) {
   if (ignored_.empty()) return;
-  const std::size_t kept = Compact(block, 0, block->size(), 0, [&](std::size_t pixel, TimeNs t) {
+  const std::size_t kept = Compact(block, 0, block->size(), 0, [&](std::size_t pixel, std::size_t i) {
     const std::uint8_t reason = ignored_[pixel];
     if (reason == kMasked) ++statistics_.masked_events;
-    if (reason == kKnownHot) CountHot(pixel, t, 1);
+    if (reason == kKnownHot) CountHot(pixel, block->t[i], 1);
     return reason != 0;
   });
   block->resize(kept);
@@ -141,9 +152,9 @@ void FilteredEventReader::ApplyHotPixels(EventColumns* block) {
     if (hot_pixels_ == 0 && kept == begin) {
       kept = end;
     } else {
-      kept = Compact(block, begin, end, kept, [&](std::size_t pixel, TimeNs t) {
+      kept = Compact(block, begin, end, kept, [&](std::size_t pixel, std::size_t i) {
         if (is_hot_[pixel] == 0) return false;
-        CountHot(pixel, t, 1);
+        CountHot(pixel, block->t[i], 1);
         return true;
       });
     }

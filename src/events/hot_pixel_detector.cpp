@@ -18,8 +18,9 @@ constexpr float kMemory = 15.0F / 16.0F;    // a step's weight against the next 
 constexpr float kMaxStepEvents = 8.0F;      // of lasting_events_: a burst is not lasting
 constexpr float kMinLastingEvents = 24.0F;  // three such steps: an edge leaves no more than a few dozen events at once
 constexpr float kMinRecurringEvents = 12.0F;  // of a pixel that was hot before
-constexpr float kMinLivelyEvents = 8.0F;
-constexpr float kSigmas = 3.0F;          // by which the counted rate exceeds the minimum
+constexpr float kLivelyRatio =
+    1.5F;                        // to the mean quiet rate of the sensor: bounds the work where all pixels are noisy
+constexpr float kSigmas = 3.0F;  // by which the counted rate exceeds the minimum
 constexpr float kMinExcessRatio = 0.5F;  // of the events that its rate lets expect, beyond what the neighbours have
 constexpr std::size_t kMinWatchedEvents = 24;
 constexpr double kMaxOnePolarity = 0.05;  // ratio of the rarer one up to which there is but one
@@ -34,6 +35,49 @@ constexpr float kReleaseRatio = 0.5F;   // of the minimum rate
 constexpr std::uint8_t kHot = 1;
 constexpr std::uint8_t kWasHot = 2;
 constexpr TimeNs kNever = std::numeric_limits<TimeNs>::max();
+
+// The compiler vectorises these loops, since nothing that they write is anything that they read.
+
+/// Sets entries 1 to cells - 2 of `disturbed` to other than 0 where a neighbour has fired. `count` and `counts_for`
+/// point to a row between two others.
+void MarkDisturbed(const std::uint8_t* __restrict count, const std::uint8_t* __restrict counts_for, std::size_t cells,
+                   std::uint8_t* __restrict disturbed) {
+  const std::uint8_t* const above = count - cells;
+  const std::uint8_t* const above_for = counts_for - cells;
+  const std::uint8_t* const below = count + cells;
+  const std::uint8_t* const below_for = counts_for + cells;
+  const auto column = [&](std::size_t x) { return (above[x] & above_for[x]) | (below[x] & below_for[x]); };
+  const auto sides = [&](std::size_t x) { return column(x) | (count[x] & counts_for[x]); };
+  for (std::size_t x = 1; x + 1 < cells; ++x) {
+    disturbed[x] = static_cast<std::uint8_t>(sides(x - 1) | column(x) | sides(x + 1));
+  }
+}
+
+struct StepRow {
+  std::uint8_t* bins;
+  std::uint8_t* events;
+  std::uint8_t* all;
+};
+
+/// Adds the counts of a row to its step.
+void AddBin(const std::uint8_t* __restrict count, const std::uint8_t* __restrict disturbed, std::size_t cells,
+            const StepRow& row) {
+  std::uint8_t* __restrict const bins = row.bins;
+  std::uint8_t* __restrict const events = row.events;
+  std::uint8_t* __restrict const all = row.all;
+  for (std::size_t x = 1; x + 1 < cells; ++x) {
+    const std::uint8_t quiet = disturbed[x] == 0 ? 0xFF : 0;
+    const auto own = std::min(static_cast<std::uint8_t>(count[x] & 0x7F), kMaxBinEvents);
+    bins[x] = static_cast<std::uint8_t>(bins[x] + (quiet & 1));
+    events[x] = static_cast<std::uint8_t>(events[x] + (quiet & own));
+    all[x] = static_cast<std::uint8_t>(all[x] + own);
+  }
+}
+
+/// The sums decay by kMemory and take the step in.
+void AddStepTo(const std::uint8_t* __restrict step, std::size_t cells, float max, float* __restrict sum) {
+  for (std::size_t i = 0; i < cells; ++i) sum[i] = kMemory * sum[i] + std::min(static_cast<float>(step[i]), max);
+}
 
 }  // namespace
 
@@ -110,31 +154,10 @@ void HotPixelDetector::Count(const EventColumns& events, std::size_t begin, std:
 }
 
 void HotPixelDetector::EndBin(std::vector<Change>* changes) {
-  const auto columns = static_cast<std::size_t>(width_);
-  for (int y = 1; y <= height_; ++y) {
-    const std::size_t first = static_cast<std::size_t>(y) * stride_;
-    const std::uint8_t* const above = &count_[first - stride_];
-    const std::uint8_t* const here = &count_[first];
-    const std::uint8_t* const below = &count_[first + stride_];
-    const std::uint8_t* const above_for = &counts_for_[first - stride_];
-    const std::uint8_t* const here_for = &counts_for_[first];
-    const std::uint8_t* const below_for = &counts_for_[first + stride_];
-    std::uint8_t* const row = row_.data();
-    for (std::size_t x = 0; x < stride_; ++x) {
-      row[x] = static_cast<std::uint8_t>((above[x] & above_for[x]) | (below[x] & below_for[x]));
-    }
-    std::uint8_t* const bins = &step_bins_[first];
-    std::uint8_t* const events = &step_events_[first];
-    std::uint8_t* const all = &step_all_[first];
-    for (std::size_t x = 1; x <= columns; ++x) {
-      const auto left = static_cast<std::uint8_t>(row[x - 1] | (here[x - 1] & here_for[x - 1]));
-      const auto right = static_cast<std::uint8_t>(row[x + 1] | (here[x + 1] & here_for[x + 1]));
-      const std::uint8_t quiet = (left | right | row[x]) == 0 ? 0xFF : 0;
-      const auto own = std::min(static_cast<std::uint8_t>(here[x] & 0x7F), kMaxBinEvents);
-      bins[x] = static_cast<std::uint8_t>(bins[x] + (quiet & 1));
-      events[x] = static_cast<std::uint8_t>(events[x] + (quiet & own));
-      all[x] = static_cast<std::uint8_t>(all[x] + own);
-    }
+  for (std::size_t y = 1; y <= static_cast<std::size_t>(height_); ++y) {
+    const std::size_t first = y * stride_;
+    MarkDisturbed(&count_[first], &counts_for_[first], stride_, row_.data());
+    AddBin(&count_[first], row_.data(), stride_, {&step_bins_[first], &step_events_[first], &step_all_[first]});
   }
   for (std::uint8_t& count : count_) count &= kWatched;
   bin_end_ += kBin;
@@ -142,16 +165,27 @@ void HotPixelDetector::EndBin(std::vector<Change>* changes) {
 }
 
 void HotPixelDetector::AddStep() {
+  const std::size_t cells = count_.size();
+  constexpr float kAny = 255.0F;
   all_bins_ = kMemory * all_bins_ + static_cast<float>(bins_);
-  for (std::size_t i = 0; i < count_.size(); ++i) {
-    const auto events = static_cast<float>(step_events_[i]);
-    quiet_bins_[i] = kMemory * quiet_bins_[i] + static_cast<float>(step_bins_[i]);
-    quiet_events_[i] = kMemory * quiet_events_[i] + events;
-    all_events_[i] = kMemory * all_events_[i] + static_cast<float>(step_all_[i]);
-    lasting_events_[i] = kMemory * lasting_events_[i] + std::min(events, kMaxStepEvents);
-    const bool is_lively = lasting_events_[i] >= kMinLivelyEvents && quiet_events_[i] >= min_rate_ * quiet_bins_[i];
-    look_at_[i] = static_cast<std::uint8_t>(is_lively | count_[i] | (is_hot_[i] & kHot));
+  AddStepTo(step_bins_.data(), cells, kAny, quiet_bins_.data());
+  AddStepTo(step_events_.data(), cells, kAny, quiet_events_.data());
+  AddStepTo(step_all_.data(), cells, kAny, all_events_.data());
+  AddStepTo(step_events_.data(), cells, kMaxStepEvents, lasting_events_.data());
+  min_lively_rate_ = std::max(min_rate_, kLivelyRatio * MeanQuietRate());
+  for (std::size_t i = 0; i < cells; ++i) {
+    look_at_[i] = static_cast<std::uint8_t>(IsLively(i) | count_[i] | (is_hot_[i] & kHot));
   }
+}
+
+float HotPixelDetector::MeanQuietRate() const {
+  double events = 0.0;
+  double bins = 0.0;
+  for (std::size_t i = 0; i < count_.size(); ++i) {
+    events += quiet_events_[i];
+    bins += quiet_bins_[i];
+  }
+  return static_cast<float>(events / (bins + 1.0));
 }
 
 void HotPixelDetector::EndStep(std::vector<Change>* changes) {
@@ -180,7 +214,7 @@ void HotPixelDetector::Judge(std::size_t cell, std::vector<Change>* changes) {
     if (rate < kReleaseRatio * min_rate_) SetHot(cell, false, changes);
     return;
   }
-  if (rate < min_rate_ || lasting_events_[cell] < kMinLivelyEvents) {
+  if (!IsLively(cell)) {
     forget();
     return;
   }

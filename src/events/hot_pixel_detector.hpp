@@ -45,6 +45,8 @@ class HotPixelDetector {
   TimeNs known_until() const { return known_until_; }
 
  private:
+  static constexpr float kMinLivelyEvents = 8.0F;
+
   /// The last events of a pixel that may become hot.
   struct Watch {
     static constexpr std::size_t kMaxEvents = 128;
@@ -68,6 +70,12 @@ class HotPixelDetector {
   /// Whether the polarities are in random order, or all the same.
   static bool IsDisordered(const Watch& watch);
   void SetHot(std::size_t cell, bool is_hot, std::vector<Change>* changes);
+  /// Mean over the sensor.
+  float MeanQuietRate() const;
+  /// Whether a closer look at a pixel is worth it.
+  bool IsLively(std::size_t cell) const {
+    return lasting_events_[cell] >= kMinLivelyEvents && quiet_events_[cell] >= min_lively_rate_ * quiet_bins_[cell];
+  }
   /// Quiet rate in events a bin.
   float QuietRate(std::size_t cell) const { return quiet_events_[cell] / (quiet_bins_[cell] + 1.0F); }
 
@@ -77,6 +85,7 @@ class HotPixelDetector {
   TimeNs look_ahead_;
   float min_rate_;  // events a bin
   float rate_ratio_;
+  float min_lively_rate_ = 0.0F;
 
   bool started_ = false;
   TimeNs bin_end_ = 0;

@@ -59,8 +59,8 @@ class FilteredEventReader : public EventReader {
   void ApplyMask(EventColumns* block);
   /// Removes the events of pixels that were found hot.
   void ApplyHotPixels(EventColumns* block);
-  /// Calls leaves_out(pixel, t) for events [begin, end) of `block`, moves those that stay to `kept` and returns the end
-  /// of these.
+  /// Calls leaves_out(pixel, i) for events i in [begin, end) of `block`, moves those that stay to `kept` and returns
+  /// the end of these.
   template <typename Rule>
   std::size_t Compact(EventColumns* block, std::size_t begin, std::size_t end, std::size_t kept, Rule leaves_out) const;
   /// Counts events of a hot pixel at `t`.
