@@ -39,16 +39,10 @@ events::Interval ParseInterval(const RecordingArguments& arguments) {
   return interval;
 }
 
-events::IgnoredPixels ReadIgnoredPixels(const RecordingArguments& arguments, int width, int height, RunRecord* record) {
+events::IgnoredPixels ReadIgnoredPixels(const RecordingArguments& arguments, int width, int height) {
   events::IgnoredPixels ignored;
-  if (!arguments.mask.empty()) {
-    ignored.masked = io::ReadMask(arguments.mask, width, height);
-    record->AddInput("mask", arguments.mask);
-  }
-  if (!arguments.hot_pixels.empty()) {
-    ignored.hot = io::ReadHotPixels(arguments.hot_pixels, width, height);
-    record->AddInput("hot_pixels", arguments.hot_pixels);
-  }
+  if (!arguments.mask.empty()) ignored.masked = io::ReadMask(arguments.mask, width, height);
+  if (!arguments.hot_pixels.empty()) ignored.hot = io::ReadHotPixels(arguments.hot_pixels, width, height);
   return ignored;
 }
 
@@ -106,12 +100,14 @@ Recording OpenRecording(const RecordingArguments& arguments, const events::Event
     calibration = *files.calibration;
   }
   geometry::Camera camera = OpenCamera(calibration, arguments.sensor);
-  const auto ignored = ReadIgnoredPixels(arguments, camera.width(), camera.height(), record);
+  const auto ignored = ReadIgnoredPixels(arguments, camera.width(), camera.height());
   auto reader = std::make_unique<events::FilteredEventReader>(
       io::OpenEvents(files.events, interval, camera.width(), camera.height()), camera.width(), camera.height(), options,
       ignored);
   record->AddLargeInput("events", files.events);
   record->AddInput("calibration", calibration);
+  if (!arguments.mask.empty()) record->AddInput("mask", arguments.mask);
+  if (!arguments.hot_pixels.empty()) record->AddInput("hot_pixels", arguments.hot_pixels);
   return {camera, files.events, std::move(reader), interval, files.ground_truth, arguments.save_hot_pixels};
 }
 

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include "evo/core/error.hpp"
 #include "evo/core/output_file.hpp"
@@ -56,25 +57,31 @@ std::uint32_t ParseColumnOrRow(const TextLines& lines, std::string_view text, co
 
 }  // namespace
 
-std::vector<std::uint8_t> ReadMask(const std::filesystem::path& path, int width, int height) {
+Mask ReadMask(const std::filesystem::path& path) {
   RequireKind(path, {FileKind::kPng}, "a mask, a PNG image in which black pixels are ignored");
   PngFile file(path);
-  if (file.width() != static_cast<std::size_t>(width) || file.height() != static_cast<std::size_t>(height)) {
-    throw Error(ErrorKind::kInput,
-                fmt::format("{}: the mask has {} x {} px, the sensor {} x {}; draw the mask in the sensor's raw pixels",
-                            path.string(), file.width(), file.height(), width, height));
-  }
+  Mask mask{static_cast<int>(file.width()), static_cast<int>(file.height()), {}};
   const auto rgba = file.ReadRgba();
-  std::vector<std::uint8_t> ignored(rgba.size() / 4);
-  for (std::size_t i = 0; i < ignored.size(); ++i) {
+  mask.ignored.resize(rgba.size() / 4);
+  for (std::size_t i = 0; i < mask.ignored.size(); ++i) {
     const std::uint8_t* const pixel = &rgba[4 * i];
-    ignored[i] = pixel[3] == 0 || (pixel[0] | pixel[1] | pixel[2]) == 0 ? 1 : 0;
+    mask.ignored[i] = pixel[3] == 0 || (pixel[0] | pixel[1] | pixel[2]) == 0 ? 1 : 0;
   }
-  if (std::ranges::all_of(ignored, [](auto is_ignored) { return is_ignored != 0; })) {
+  if (std::ranges::all_of(mask.ignored, [](auto is_ignored) { return is_ignored != 0; })) {
     throw Error(ErrorKind::kInput,
                 path.string() + ": the mask is black everywhere and leaves no event; black is what is ignored");
   }
-  return ignored;
+  return mask;
+}
+
+std::vector<std::uint8_t> ReadMask(const std::filesystem::path& path, int width, int height) {
+  Mask mask = ReadMask(path);
+  if (mask.width != width || mask.height != height) {
+    throw Error(ErrorKind::kInput,
+                fmt::format("{}: the mask has {} x {} px, the sensor {} x {}; draw the mask in the sensor's raw pixels",
+                            path.string(), mask.width, mask.height, width, height));
+  }
+  return std::move(mask.ignored);
 }
 
 std::vector<std::uint32_t> ReadHotPixels(const std::filesystem::path& path, int width, int height) {
