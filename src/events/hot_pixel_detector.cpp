@@ -18,9 +18,8 @@ constexpr float kMemory = 15.0F / 16.0F;    // a step's weight against the next 
 constexpr float kMaxStepEvents = 8.0F;      // of lasting_events_: a burst is not lasting
 constexpr float kMinLastingEvents = 24.0F;  // three such steps: an edge leaves no more than a few dozen events at once
 constexpr float kMinRecurringEvents = 12.0F;  // of a pixel that was hot before
-constexpr float kLivelyRatio =
-    1.5F;                        // to the mean quiet rate of the sensor: bounds the work where all pixels are noisy
-constexpr float kSigmas = 3.0F;  // by which the counted rate exceeds the minimum
+constexpr float kLivelyRatio = 1.5F;     // to the sensor's mean quiet rate: bounds the work where all pixels are noisy
+constexpr float kSigmas = 3.0F;          // by which the counted rate exceeds the minimum
 constexpr float kMinExcessRatio = 0.5F;  // of the events that its rate lets expect, beyond what the neighbours have
 constexpr std::size_t kMinWatchedEvents = 24;
 constexpr double kMaxOnePolarity = 0.05;  // ratio of the rarer one up to which there is but one
