@@ -2,6 +2,7 @@
 
 #include "evo/core/parameters.hpp"
 #include "evo/evaluation/evaluation_options.hpp"
+#include "evo/events/event_filter_options.hpp"
 #include "evo/odometry/odometry_options.hpp"
 #include "evo/tracking/tracker_options.hpp"
 
@@ -10,6 +11,7 @@ namespace evo::app {
 /// The options of all stages, gathered in one place, and their names for files and --set.
 struct Config {
   Config() {
+    Register(parameters, filters);
     Register(parameters, tracker);
     Register(parameters, odometry);
     Register(parameters, evaluation);
@@ -18,6 +20,7 @@ struct Config {
   Config(const Config&) = delete;  // the parameters refer to the fields
   Config& operator=(const Config&) = delete;
 
+  events::EventFilterOptions filters;
   tracking::TrackerOptions tracker;
   odometry::OdometryOptions odometry;
   evaluation::EvaluationOptions evaluation;

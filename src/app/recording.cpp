@@ -5,6 +5,7 @@
 #include "evo/core/error.hpp"
 #include "evo/io/calibration_io.hpp"
 #include "evo/io/open_events.hpp"
+#include "evo/io/pixel_files.hpp"
 #include "evo/io/sequence.hpp"
 
 namespace evo::app {
@@ -38,6 +39,13 @@ events::Interval ParseInterval(const RecordingArguments& arguments) {
   return interval;
 }
 
+events::IgnoredPixels ReadIgnoredPixels(const RecordingArguments& arguments, int width, int height) {
+  events::IgnoredPixels ignored;
+  if (!arguments.mask.empty()) ignored.masked = io::ReadMask(arguments.mask, width, height);
+  if (!arguments.hot_pixels.empty()) ignored.hot = io::ReadHotPixels(arguments.hot_pixels, width, height);
+  return ignored;
+}
+
 }  // namespace
 
 void AddSensorOption(CLI::App& command, std::string& sensor) {
@@ -61,13 +69,26 @@ void AddRecordingOptions(CLI::App& command, RecordingArguments& arguments) {
       ->type_name("S");
   command.add_option("--to", arguments.to, "End of the interval in s after the first event; default: the last event")
       ->type_name("S");
+  command
+      .add_option("--mask", arguments.mask,
+                  "PNG of the sensor's size; events at its black or transparent pixels are ignored")
+      ->type_name("IMAGE");
+  command
+      .add_option("--hot-pixels", arguments.hot_pixels,
+                  "Text file of rows 'x y', as --save-hot-pixels writes it: pixels whose events are ignored")
+      ->type_name("FILE");
+  command
+      .add_option("--save-hot-pixels", arguments.save_hot_pixels,
+                  "Write the hot pixels, those of --hot-pixels and those found, to this text file")
+      ->type_name("FILE");
 }
 
 geometry::Camera OpenCamera(const std::filesystem::path& calibration, const std::string& sensor) {
   return geometry::Camera(io::ReadCalibration(calibration, ParseSensor(sensor)));
 }
 
-Recording OpenRecording(const RecordingArguments& arguments, RunRecord* record) {
+Recording OpenRecording(const RecordingArguments& arguments, const events::EventFilterOptions& options,
+                        RunRecord* record) {
   const events::Interval interval = ParseInterval(arguments);
   const io::SequenceFiles files = io::FindSequence(arguments.events);
   std::filesystem::path calibration = arguments.calibration;
@@ -79,10 +100,15 @@ Recording OpenRecording(const RecordingArguments& arguments, RunRecord* record) 
     calibration = *files.calibration;
   }
   geometry::Camera camera = OpenCamera(calibration, arguments.sensor);
-  auto reader = io::OpenEvents(files.events, interval, camera.width(), camera.height());
+  const auto ignored = ReadIgnoredPixels(arguments, camera.width(), camera.height());
+  auto reader = std::make_unique<events::FilteredEventReader>(
+      io::OpenEvents(files.events, interval, camera.width(), camera.height()), camera.width(), camera.height(), options,
+      ignored);
   record->AddLargeInput("events", files.events);
   record->AddInput("calibration", calibration);
-  return {camera, files.events, std::move(reader), interval, files.ground_truth};
+  if (!arguments.mask.empty()) record->AddInput("mask", arguments.mask);
+  if (!arguments.hot_pixels.empty()) record->AddInput("hot_pixels", arguments.hot_pixels);
+  return {camera, files.events, std::move(reader), interval, files.ground_truth, arguments.save_hot_pixels};
 }
 
 std::string SequenceName(const std::filesystem::path& file) {

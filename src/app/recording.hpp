@@ -6,7 +6,7 @@
 #include <string>
 
 #include "app/run/run_record.hpp"
-#include "evo/events/event_reader.hpp"
+#include "evo/events/filtered_event_reader.hpp"
 #include "evo/geometry/camera.hpp"
 
 namespace evo::app {
@@ -18,9 +18,12 @@ struct RecordingArguments {
   std::string sensor;
   std::string from = "0";
   std::string to;
+  std::string mask;             ///< empty: none
+  std::string hot_pixels;       ///< empty: none are known
+  std::string save_hot_pixels;  ///< empty: they are not saved
 };
 
-/// --events, --calibration, --sensor, --from and --to.
+/// --events, --calibration, --sensor, --from, --to, --mask, --hot-pixels and --save-hot-pixels.
 void AddRecordingOptions(CLI::App& command, RecordingArguments& arguments);
 
 /// Reads the camera from --calibration and --sensor. Throws Error.
@@ -32,13 +35,16 @@ void AddSensorOption(CLI::App& command, std::string& sensor);
 struct Recording {
   geometry::Camera camera;
   std::filesystem::path events;
-  std::unique_ptr<events::EventReader> reader;
+  std::unique_ptr<events::FilteredEventReader> reader;
   events::Interval interval;
   std::optional<std::filesystem::path> ground_truth;  ///< the file beside the events, if any
+  std::filesystem::path save_hot_pixels;              ///< empty: they are not saved
 };
 
-/// Finds the files, reads the calibration, opens the events and adds both to `record`. Throws Error.
-Recording OpenRecording(const RecordingArguments& arguments, RunRecord* record);
+/// Finds the files, reads the calibration and the masks, opens the events behind the filters of `options` and adds all
+/// inputs to `record`. Throws Error.
+Recording OpenRecording(const RecordingArguments& arguments, const events::EventFilterOptions& options,
+                        RunRecord* record);
 
 /// The name of the sequence to which a file of events or ground truth belongs: "drive" for drive_data.hdf5 and
 /// drive_gt.hdf5, the folder's name for events.txt and groundtruth.txt.

@@ -44,27 +44,46 @@ void AddSpan(FileDescription* description, const std::string& prefix, std::size_
     values.emplace_back(prefix + "mean rate", Fixed(static_cast<double>(count - 1) / seconds, 1, rate_unit));
 }
 
-/// The pixels and the share of positive polarities of some events.
+/// The pixels and the share of positive polarities of some events, those outside `mask` if there is one.
 struct EventExtent {
+  const Mask* mask = nullptr;
   int left = std::numeric_limits<int>::max();
   int top = std::numeric_limits<int>::max();
   int right = -1;
   int bottom = -1;
   std::size_t events = 0;
   std::size_t positive = 0;
+  std::size_t masked = 0;
 
   void Add(const events::EventColumns& block) {
     for (std::size_t i = 0; i < block.size(); ++i) {
+      if (IsMasked(block.x[i], block.y[i])) {
+        ++masked;
+        continue;
+      }
+      ++events;
       left = std::min<int>(left, block.x[i]);
       right = std::max<int>(right, block.x[i]);
       top = std::min<int>(top, block.y[i]);
       bottom = std::max<int>(bottom, block.y[i]);
       positive += block.polarity[i] > 0 ? 1 : 0;
     }
-    events += block.size();
+  }
+
+  std::size_t all() const { return events + masked; }
+
+  bool IsMasked(int x, int y) const {
+    if (!mask || x >= mask->width || y >= mask->height) return false;
+    return mask->ignored[static_cast<std::size_t>(y) * static_cast<std::size_t>(mask->width) +
+                         static_cast<std::size_t>(x)] != 0;
   }
 
   void AddTo(FileDescription* description, const std::string& note) const {
+    if (mask) {
+      const double percent = 100.0 * static_cast<double>(masked) / static_cast<double>(masked + events);
+      description->values.emplace_back("masked", Fixed(percent, 1, "% of the events") + note);
+    }
+    if (events == 0) return;
     const auto range = [&](int low, int high) { return std::to_string(low) + " to " + std::to_string(high) + " px"; };
     description->values.emplace_back("columns", range(left, right) + note);
     description->values.emplace_back("rows", range(top, bottom) + note);
@@ -73,27 +92,27 @@ struct EventExtent {
   }
 };
 
-FileDescription DescribeEventText(const std::filesystem::path& path) {
+FileDescription DescribeEventText(const std::filesystem::path& path, const Mask* mask) {
   const auto reader = OpenEvents(path, {}, kAnySensor, kAnySensor);
-  EventExtent extent;
+  EventExtent extent{.mask = mask};
   events::EventColumns block;
   TimeNs last = reader->first_stamp();
   while (reader->Next(&block)) {
     extent.Add(block);
     last = block.t.back();
   }
-  FileDescription description{"UZH events", {{"events", std::to_string(extent.events)}}};
-  AddSpan(&description, "", extent.events, reader->first_stamp(), last, "events/s");
+  FileDescription description{"UZH events", {{"events", std::to_string(extent.all())}}};
+  AddSpan(&description, "", extent.all(), reader->first_stamp(), last, "events/s");
   extent.AddTo(&description, "");
   return description;
 }
 
-void AddMvsecEvents(FileDescription* description, const hdf5::File& file) {
+void AddMvsecEvents(FileDescription* description, const hdf5::File& file, const Mask* mask) {
   MvsecEvents events(file);
   const hsize_t rows = events.rows();
   description->values.emplace_back("events", std::to_string(rows));
   AddSpan(description, "", rows, events.ReadStamp(0), events.ReadStamp(rows - 1), "events/s");
-  EventExtent extent;
+  EventExtent extent{.mask = mask};
   events::EventColumns block;
   const hsize_t count = std::min(kSampleRows, rows);
   for (hsize_t i = 0; i < kSamples; ++i) {
@@ -118,12 +137,12 @@ void AddTrajectory(FileDescription* description, const std::string& prefix, cons
   AddSpan(description, prefix, trajectory.size(), trajectory.front().t, trajectory.back().t, "poses/s");
 }
 
-FileDescription DescribeHdf5(const std::filesystem::path& path) {
+FileDescription DescribeHdf5(const std::filesystem::path& path, const Mask* mask) {
   const hdf5::File file(path);
   FileDescription description;
   if (file.Has(kMvsecEvents)) {
     description.kind = "MVSEC events";
-    AddMvsecEvents(&description, file);
+    AddMvsecEvents(&description, file, mask);
     return description;
   }
   description.kind = "MVSEC ground truth";
@@ -190,9 +209,9 @@ FileDescription DescribeCalibration(const std::filesystem::path& path, bool has_
            {"coefficients", coefficients}}};
 }
 
-FileDescription DescribeFolder(const std::filesystem::path& path) {
+FileDescription DescribeFolder(const std::filesystem::path& path, const Mask* mask) {
   const SequenceFiles files = FindSequence(path);
-  FileDescription description = DescribeFile(files.events);
+  FileDescription description = DescribeFile(files.events, mask);
   auto& values = description.values;
   const auto name = [](const std::optional<std::filesystem::path>& file) { return file ? file->string() : "none"; };
   values.insert(values.begin(), {{"event file", files.events.string()},
@@ -203,14 +222,14 @@ FileDescription DescribeFolder(const std::filesystem::path& path) {
 
 }  // namespace
 
-FileDescription DescribeFile(const std::filesystem::path& path) {
+FileDescription DescribeFile(const std::filesystem::path& path, const Mask* mask) {
   switch (const FileKind kind = DetectKind(path)) {
     case FileKind::kFolder:
-      return DescribeFolder(path);
+      return DescribeFolder(path, mask);
     case FileKind::kHdf5:
-      return DescribeHdf5(path);
+      return DescribeHdf5(path, mask);
     case FileKind::kEventText:
-      return DescribeEventText(path);
+      return DescribeEventText(path, mask);
     case FileKind::kTrackText:
       return DescribeTracks(path);
     case FileKind::kCalibrationText:

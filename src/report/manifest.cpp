@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "evo/core/error.hpp"
@@ -60,6 +62,24 @@ const Json& Object(const Json& json, const char* name) {
   const Json& object = json.at(name);
   if (!object.is_object()) throw std::runtime_error(std::string(name) + " is not an object");
   return object;
+}
+
+/// The pixels with the most events.
+Json HotPixelList(std::vector<events::HotPixel> pixels) {
+  constexpr std::size_t kMaxListed = 500;
+  std::ranges::stable_sort(pixels, std::greater<>(), [](const auto& pixel) { return pixel.events; });
+  if (pixels.size() > kMaxListed) pixels.resize(kMaxListed);
+  Json list = Json::array();
+  for (const auto& pixel : pixels) {
+    Json entry = {{"x", pixel.x}, {"y", pixel.y}, {"events", pixel.events}};
+    if (pixel.events > 0) {
+      entry["rate_hz"] = std::round(10.0 * pixel.Rate()) / 10.0;
+      entry["first"] = FormatTime(pixel.first);
+      entry["last"] = FormatTime(pixel.last);
+    }
+    list.push_back(entry);
+  }
+  return list;
 }
 
 Manifest FromJson(const Json& json) {
@@ -130,6 +150,7 @@ void WriteManifest(const std::filesystem::path& path, const Manifest& manifest) 
   }
   json["counts"] = Json::object();
   for (const auto& [name, count] : manifest.counts) json["counts"][name] = count;
+  if (!manifest.hot_pixels.empty()) json["hot_pixels"] = HotPixelList(manifest.hot_pixels);
   json["rebootstraps"] = Json::array();
   for (const TimeNs stamp : manifest.rebootstraps) json["rebootstraps"].push_back(FormatTime(stamp));
   if (!manifest.scale.empty()) json["scale"] = manifest.scale;

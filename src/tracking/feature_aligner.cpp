@@ -55,8 +55,7 @@ void FeatureAligner::Predict(const TrackedFeature& feature, double step_s, const
   alignment->predicted_position = state.position + 0.5 * step_s * (flow + motion.flow);
 
   alignment->J_pixel_rotation = ego_motion_.jacobians().Lookup(alignment->predicted_position).J_pixel_rotation;
-  alignment->flow_sigma_px_s =
-      ego_motion_.jacobians().focal_px() * ego_motion_.typical_angular_acceleration() * step_s;
+  alignment->flow_sigma_px_s = ego_motion_.jacobians().focal_px() * ego_motion_.typical_angular_acceleration() * step_s;
   alignment->predicted_position += alignment->J_pixel_rotation * correction.rotation;
   motion.flow += alignment->J_pixel_rotation * correction.angular_velocity;
 }

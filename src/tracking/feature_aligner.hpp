@@ -28,7 +28,7 @@ struct FeatureAlignment {
   PatchMotion aligned;
   TimeNs half_window = 0;
   events::LocalEvents events;
-  double outlier_ratio = 0.0;  ///< mean probability that an event does not belong to the template
+  double outlier_ratio = 0.0;         ///< mean probability that an event does not belong to the template
   double log_likelihood_ratio = 0.0;  ///< of the template, see MeanLogLikelihoodRatio
   double flow_sigma_px_s = 0.0;       ///< standard deviation of the predicted flow
   std::optional<SelfBias> self_bias;  ///< of the template, see AssociationTable; empty if its polarities have flipped

@@ -23,7 +23,7 @@ struct PatchShape {
 struct AlignedWindow {
   const events::LocalEvents& events;
   const PatchMotion& motion;
-  TimeNs half;                  ///< of the window
+  TimeNs half;                 ///< of the window
   double velocity_sigma_px_s;  ///< standard deviation of the motion's velocity
 };
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "evo/core/time.hpp"
+#include "evo/events/hot_pixels.hpp"
 
 namespace evo::report {
 
@@ -31,9 +32,10 @@ struct Manifest {
   std::vector<ManifestInput> inputs;
   std::vector<std::pair<std::string, std::int64_t>> counts;  ///< "events", "tracks", "frames", ...
   std::vector<StageTime> stages;
-  std::optional<double> recorded_s;  ///< time from the first tracked event frame to the last (s)
-  std::vector<TimeNs> rebootstraps;  ///< stamps of the frames at which the odometry reinitialised
-  std::string scale;                 ///< unit of the trajectory: "arbitrary" or "ground" (m); empty without odometry
+  std::vector<events::HotPixel> hot_pixels;  ///< of the filters; written, not read back
+  std::optional<double> recorded_s;          ///< time from the first tracked event frame to the last (s)
+  std::vector<TimeNs> rebootstraps;          ///< stamps of the frames at which the odometry reinitialised
+  std::string scale;  ///< unit of the trajectory: "arbitrary" or "ground" (m); empty without odometry
 };
 
 /// Writes manifest.json with the CPU time and peak memory of this process so far. Throws Error (kOutput).

@@ -48,7 +48,7 @@ void RunAll(const RunArguments& arguments, const std::vector<std::string>& comma
   StageRun run(arguments.common, arguments.results, config.parameters, command_line);
 
   // All inputs are opened before the work, so that a wrong one is reported at once.
-  Recording recording = OpenRecording(arguments.recording, &run.record);
+  Recording recording = OpenRecording(arguments.recording, config.filters, &run.record);
   const auto truth = OpenGroundTruth(arguments.ground_truth, arguments.common.Source(), recording, &run.record);
   if (truth) RequireOverlap(*truth, recording, FromSeconds(config.evaluation.association.estimate_clock_offset_s));
   // Earlier results go first: this run may fail or have no ground truth.

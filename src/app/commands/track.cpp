@@ -21,7 +21,7 @@ void RunTrack(const TrackArguments& arguments, const std::vector<std::string>& c
   arguments.common.Apply(&config.parameters);
   CheckRunFolder(arguments.results.out, TrackingResultNames(), arguments.common.force);
   StageRun run(arguments.common, arguments.results, config.parameters, command_line);
-  Recording recording = OpenRecording(arguments.recording, &run.record);
+  Recording recording = OpenRecording(arguments.recording, config.filters, &run.record);
   if (arguments.common.force) RemoveTrackingResults(arguments.results.out);
   const TrackingOutcome outcome = RunTrackingStage(config.tracker, &recording, &run);
   run.Finish();

@@ -14,6 +14,7 @@
 #include "evo/core/error.hpp"
 #include "evo/core/output_file.hpp"
 #include "evo/core/progress.hpp"
+#include "evo/io/pixel_files.hpp"
 #include "evo/report/evaluation_tables.hpp"
 #include "evo/report/figures.hpp"
 #include "evo/report/latex_tables.hpp"
@@ -75,15 +76,36 @@ void WriteLifetimes(const StageRun& run, const std::string& sequence, const eval
 }
 
 void RecordCounts(const TrackingOutcome& outcome, StageRun* run) {
-  const auto& [result, lifetimes, observations] = outcome;
+  const auto& [result, lifetimes, observations, filters, hot_pixels] = outcome;
   RunRecord& record = run->record;
   record.manifest.recorded_s = ToSeconds(result.frames.back() - result.frames.front());
   record.AddCount("threads", static_cast<std::size_t>(run->pool.size()));
-  record.AddCount("events", result.events);
+  record.AddCount("events", filters.events);
+  record.AddCount("masked_pixels", filters.masked_pixels);
+  record.AddCount("masked_events", filters.masked_events);
+  record.AddCount("hot_pixels", hot_pixels);
+  record.AddCount("hot_events", filters.hot_events);
   record.AddCount("event_frames", result.frames.size());
   record.AddCount("event_key_frames", result.key_frames);
   record.AddCount("tracks", static_cast<std::size_t>(lifetimes.tracks + lifetimes.tracks_too_short));
   record.AddCount("track_observations", observations);
+}
+
+/// What the filters left out; empty if nothing.
+std::string FormatFilters(const TrackingOutcome& outcome) {
+  const events::FilterStatistics& filters = outcome.filters;
+  const auto percent = [&](std::uint64_t events) {
+    return 100.0 * static_cast<double>(events) / static_cast<double>(std::max<std::uint64_t>(1, filters.events));
+  };
+  std::string text;
+  if (filters.masked_pixels > 0) {
+    text += fmt::format("mask       {} pixels, {:.2f} % of the events\n", filters.masked_pixels,
+                        percent(filters.masked_events));
+  }
+  if (outcome.hot_pixels > 0) {
+    text += fmt::format("hot pixels {}, {:.2f} % of the events\n", outcome.hot_pixels, percent(filters.hot_events));
+  }
+  return text;
 }
 
 }  // namespace
@@ -102,6 +124,12 @@ TrackingOutcome RunTrackingStage(const tracking::TrackerOptions& options, Record
   TrackResults results(run->results.out / "tracks.txt", {tracking::DescribePositions(options)}, tracks);
   TrackingOutcome outcome;
   outcome.result = run->record.Time("track", [&] { return Track(options, recording, run, &results); });
+  outcome.filters = recording->reader->statistics();
+  outcome.hot_pixels = recording->reader->hot_pixels().size();
+  run->record.manifest.hot_pixels = recording->reader->hot_pixels();
+  if (!recording->save_hot_pixels.empty()) {
+    io::WriteHotPixels(recording->save_hot_pixels, recording->reader->hot_pixels());
+  }
   const auto& frames = outcome.result.frames;
   outcome.lifetimes = results.Lifetimes(frames);
   outcome.observations = results.observations();
@@ -118,7 +146,8 @@ TrackingOutcome RunTrackingStage(const tracking::TrackerOptions& options, Record
 
 std::string FormatTracking(const TrackingOutcome& outcome) {
   const auto frames = std::max<std::size_t>(1, outcome.result.frames.size());
-  return fmt::format("tracking   {} events, {} event frames, {:.0f} live features\n", outcome.result.events,
+  return FormatFilters(outcome) +
+         fmt::format("tracking   {} events, {} event frames, {:.0f} live features\n", outcome.result.events,
                      outcome.result.frames.size(),
                      static_cast<double>(outcome.observations) / static_cast<double>(frames)) +
          report::FormatLifetimes(outcome.lifetimes);

@@ -15,6 +15,8 @@ struct TrackingOutcome {
   tracking::TrackingResult result;
   evaluation::LifetimeStatistics lifetimes;
   std::size_t observations = 0;
+  events::FilterStatistics filters;
+  std::size_t hot_pixels = 0;
 };
 
 /// Files of the tracking stage in the output folder.

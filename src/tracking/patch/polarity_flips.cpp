@@ -18,9 +18,9 @@ constexpr float kNormalSigma = 0.25f;     // rad, of an edge's normal from the e
 // A turn by d sweeps over an edge with a probability of at most d times the density of the normal's angle; d is about
 // 2 sin(d / 2).
 constexpr float kSweepGain = 0.8f / kNormalSigma;
-constexpr double kMinTurnSine = 0.17;       // of a turn that may flip an edge: 10 degrees
-constexpr double kMinSpeedSigmas = 4.0;     // a faster motion has a certain direction
-constexpr float kMinSquaredSpeed = 1e-6f;   // px^2/s^2, guards a division
+constexpr double kMinTurnSine = 0.17;      // of a turn that may flip an edge: 10 degrees
+constexpr double kMinSpeedSigmas = 4.0;    // a faster motion has a certain direction
+constexpr float kMinSquaredSpeed = 1e-6f;  // px^2/s^2, guards a division
 
 /// Smooth sign: x / sqrt(x^2 + sigma^2).
 inline float SoftSign(float x, float sigma) { return x / std::sqrt(x * x + sigma * sigma); }
@@ -73,7 +73,8 @@ void PolarityFlips::FindEdges(const EventHistogram& histogram) {
     }
   }
   const std::ptrdiff_t first = margin * width;
-  const auto smooth = [&](const std::vector<float>& kernel, std::vector<float>* cells_of_plane, std::vector<float>* out) {
+  const auto smooth = [&](const std::vector<float>& kernel, std::vector<float>* cells_of_plane,
+                          std::vector<float>* out) {
     ConvolveCells(kernel, cells_of_plane->data() + first, 1, side_ * width, rows.data() + first);
     ConvolveCells(kernel, rows.data() + first, width, side_ * width, out->data() + first);
   };

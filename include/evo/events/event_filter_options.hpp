@@ -1,0 +1,16 @@
+#pragma once
+
+#include "evo/core/parameters.hpp"
+#include "evo/events/hot_pixels.hpp"
+
+namespace evo::events {
+
+/// The filters between the recording and all that reads its events.
+struct EventFilterOptions {
+  HotPixelOptions hot_pixels;
+};
+
+/// Adds `events.*`.
+void Register(Parameters& parameters, EventFilterOptions& options);
+
+}  // namespace evo::events
