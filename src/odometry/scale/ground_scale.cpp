@@ -20,7 +20,7 @@ namespace {
 constexpr double kInitialWindow = 0.1;        // over the typical distance of the tracks, before the height is known
 constexpr double kWindow = 3.0;               // heights to either side that the path is smoothed over
 constexpr double kDriftWindow = 8.0;          // heights that the scale is averaged over to measure its drift
-constexpr double kDriftOverCovariance = 0.7;  // measured: the covariance is inflated for the rotation's errors
+constexpr double kDriftOverCovariance = 0.5;  // measured: the covariance is inflated for errors of the rotation
 constexpr double kUnknownScaleDrift = 0.002;  // over a path of one height, without a covariance of the poses
 constexpr double kMaxDistance = 40.0;  // heights of arc length from the camera that observes a track to the track
 
@@ -51,8 +51,8 @@ double MedianDistance(const std::vector<TriangulatedTrack>& tracks, const Camera
   return Median(std::move(distances));
 }
 
-/// The tracks below the path. Beside it there are kerbs and parked cars, and near the image's border the tracks of a
-/// road drift outwards: at most `max_lateral_ratio` of the depth to the side.
+/// The tracks below the path, at most `max_lateral_ratio` of the depth to the side: farther out there are hardly any on
+/// the road, and they depend on its roll.
 std::vector<GroundObservation> FindGroundObservations(const PathFrame& path_frame,
                                                       const std::vector<TriangulatedTrack>& tracks, double max_distance,
                                                       double max_lateral_ratio) {
@@ -70,7 +70,7 @@ std::vector<GroundObservation> FindGroundObservations(const PathFrame& path_fram
 struct PathHeights {
   std::vector<double> inverse_heights;  // at every pose
   HeightProfile profile;
-  double scale_drift_ratio = 0.0;  // over a path of one height
+  double scale_drift_ratio = 0.0;  // of the relative scale over a path of one height
 };
 
 /// The drift of the scale that the tracks leave, as GroundOptions::scale_drift_ratio.

@@ -10,12 +10,12 @@ namespace evo::odometry {
 
 namespace {
 
-constexpr double kHeightStep = 0.01;   // of log(inverse height)
-constexpr double kRollStep = 0.01;     // rad
-constexpr double kMaxRoll = 0.12;      // rad
-constexpr double kRollSigma = 0.05;    // rad, prior
-constexpr double kRoughness = 0.015;   // of the ground in heights, with what a roll between two steps makes of it
-constexpr double kReachSigmas = 4.0;   // beyond it an observation is not on the ground
+constexpr double kHeightStep = 0.01;  // of log(inverse height)
+constexpr double kRollStep = 0.01;    // rad
+constexpr double kMaxRoll = 0.12;     // rad
+constexpr double kRollSigma = 0.05;   // rad, prior
+constexpr double kRoughness = 0.015;  // of the ground in heights, with what a roll between two steps makes of it
+constexpr double kReachSigmas = 4.0;  // beyond it an observation is not on the ground
 
 /// The best path through the grid of sections and heights.
 class HeightGrid {
@@ -28,7 +28,7 @@ class HeightGrid {
     states_ = static_cast<std::size_t>((std::log(high.inverse_height) - min_log_) / kHeightStep) + 2;
   }
 
-  FoundGround Search(double roll) {
+  FoundGround Search(double roll) const {
     const std::size_t count = sections_.step_sigmas.size() + 1;
     const std::vector<std::vector<float>> scores = ScoreSections(roll, count);
     std::vector<std::vector<std::uint32_t>> previous(count);
@@ -99,7 +99,7 @@ class HeightGrid {
 }  // namespace
 
 FoundGround SearchGround(const std::vector<GroundObservation>& observations, const GroundSections& sections) {
-  HeightGrid grid(observations, sections);
+  const HeightGrid grid(observations, sections);
   FoundGround found{{}, 0.0, -std::numeric_limits<double>::infinity()};
   const int rolls = static_cast<int>(std::lround(kMaxRoll / kRollStep));
   for (int i = -rolls; i <= rolls; ++i) {

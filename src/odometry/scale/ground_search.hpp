@@ -9,8 +9,8 @@ namespace evo::odometry {
 
 /// The path cut into sections of equal length.
 struct GroundSections {
-  std::vector<std::size_t> section;    ///< of each observation
-  std::vector<double> step_sigmas;     ///< relative change of the height from each section to the next
+  std::vector<std::size_t> section;  ///< of each observation
+  std::vector<double> step_sigmas;   ///< relative change of the height from each section to the next
 };
 
 /// A ground along the path, found among all heights and rolls that are possible.

@@ -12,7 +12,9 @@ namespace evo::odometry {
 class PlaneSmoother {
  public:
   explicit PlaneSmoother(std::size_t size)
-      : diagonal_(size, Eigen::Matrix2d::Zero()), off_diagonal_(diagonal_), right_side_(size, Eigen::Vector2d::Zero()) {}
+      : diagonal_(size, Eigen::Matrix2d::Zero()),
+        off_diagonal_(diagonal_),
+        right_side_(size, Eigen::Vector2d::Zero()) {}
 
   /// Adds the observation row . ((1 - fraction) * x[node] + fraction * x[node + 1]) = value.
   void AddObservation(std::size_t node, double fraction, const Eigen::Vector2d& row, double value, double weight);
