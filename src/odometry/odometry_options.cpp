@@ -137,8 +137,12 @@ void Register(Parameters& parameters, GroundOptions& options) {
                  "constant height of the camera above the road, which removes the drift of the scale");
   parameters.Add("odometry.ground.camera_height_m", &options.camera_height_m, 0, 100,
                  "height of the camera above the road, which makes the scale metric; 0: unknown (m)");
-  parameters.Add("odometry.ground.scale_drift_ratio", &options.scale_drift_ratio, 1e-6, 1,
-                 "standard deviation of the scale's relative change over a path of one camera height");
+  parameters.Add("odometry.ground.scale_drift_ratio", &options.scale_drift_ratio, 0, 1,
+                 "standard deviation of the scale's relative change over a path of one camera height; 0: from the "
+                 "covariance of the poses");
+  parameters.Add("odometry.ground.roll_drift", &options.roll_drift, 1e-7, 1,
+                 "standard deviation of the change of the road's roll against the camera over a path of one camera "
+                 "height (rad)");
   parameters.Add("odometry.ground.common_sigma_ratio", &options.common_sigma_ratio, 0, 1,
                  "relative standard deviation of the scale that all tracks on the ground have in common");
   parameters.Add("odometry.ground.max_lateral_ratio", &options.max_lateral_ratio, 0.01, 10,

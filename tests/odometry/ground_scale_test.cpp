@@ -146,6 +146,37 @@ TEST(GroundScale, HoldsAnUnknownHeight) {
   }
 }
 
+TEST(GroundScale, FindsARoadWithFewTracks) {
+  for (const double tracks_hz : {5.0, 8.0, 20.0}) {
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+      Street street = StreetSimulator({.road_tracks_hz = tracks_hz, .seed = seed}).Simulate();
+      const GroundScale scale = Scale(&street);
+      EXPECT_TRUE(scale.found) << tracks_hz;
+      EXPECT_NEAR(ScaleError(street, 0, 999), 0.0, std::min(0.01, 4.0 * scale.relative_sigma)) << tracks_hz;
+    }
+  }
+}
+
+TEST(GroundScale, IsTheLessSureTheFewerTracksThereAre) {
+  Street few = StreetSimulator({.road_tracks_hz = 5}).Simulate();
+  Street many = StreetSimulator({.road_tracks_hz = 20}).Simulate();
+  EXPECT_GT(Scale(&few).relative_sigma, 1.1 * Scale(&many).relative_sigma);
+}
+
+TEST(GroundScale, TakesTheRoadAndNotThePavement) {
+  for (const double tracks_hz : {8.0, 20.0, 0.0}) {
+    Street street = StreetSimulator({.road_tracks_hz = tracks_hz, .pavement_m = 0.15}).Simulate();
+    EXPECT_TRUE(Scale(&street).found) << tracks_hz;
+    EXPECT_NEAR(ScaleError(street, 0, 999), 0.0, 0.015) << tracks_hz;  // the pavement would make it 0.1
+  }
+}
+
+TEST(GroundScale, FindsFewTracksOnHills) {
+  Street street = StreetSimulator({.curvature = 0.004, .hills = 0.06, .road_tracks_hz = 10}).Simulate();
+  EXPECT_TRUE(Scale(&street).found);
+  EXPECT_NEAR(ScaleError(street, 0, 999), 0.0, 0.015);
+}
+
 void ExpectUnchanged(const GroundOptions& options, Street street) {
   const Street before = street;
   EXPECT_FALSE(ScaleByGround(options, street.frames, &street.segments).found);
@@ -160,6 +191,19 @@ void ExpectUnchanged(const GroundOptions& options, Street street) {
 TEST(GroundScale, ChangesNothingWithoutGround) {
   ExpectUnchanged({}, StreetSimulator({.road = false}).Simulate());
   ExpectUnchanged({.camera_height_m = kStreetCameraHeightM}, StreetSimulator({.road = false}).Simulate());
+}
+
+TEST(GroundScale, ClaimsNoScaleAmongWallsAndMovingObjects) {
+  for (unsigned seed = 2; seed <= 6; ++seed) {
+    ExpectUnchanged({}, StreetSimulator({.outliers = 0.3, .road = false, .seed = seed}).Simulate());
+  }
+}
+
+/// A plane on a few metres may be the bonnet of a car.
+TEST(GroundScale, ChangesNothingForAPlaneOnAFewMetres) {
+  ExpectUnchanged({}, StreetSimulator({.bare_from_m = 12, .bare_to_m = 1e9}).Simulate());
+  ExpectUnchanged({.camera_height_m = kStreetCameraHeightM},
+                  StreetSimulator({.bare_from_m = 12, .bare_to_m = 1e9}).Simulate());
 }
 
 TEST(GroundScale, ChangesNothingIfTheHeightIsNotConstant) {

@@ -175,6 +175,33 @@ TEST(PoseUncertainty, ScaleInformationReplacesTheTracks) {
   EXPECT_EQ((held[39].bottomRightCorner<3, 3>() - by_tracks[39].bottomRightCorner<3, 3>()).norm(), 0.0);
 }
 
+/// A camera that moves by one unit a pose, with a scale that is a random walk.
+TEST(PoseUncertainty, MeasuresTheDriftOfTheScale) {
+  constexpr double kDrift = 0.003;
+  constexpr std::size_t kPoses = 200;
+  constexpr Eigen::Index kSamples = 100;
+  std::vector<geometry::SE3> poses;
+  for (std::size_t i = 0; i < kPoses; ++i) {
+    poses.emplace_back(Eigen::Quaterniond::Identity(), Eigen::Vector3d(0, 0, -static_cast<double>(i)));
+  }
+  PoseErrorSamples errors(poses, kSamples);
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  for (Eigen::Index k = 0; k < kSamples; ++k) {
+    double scale_error = 0.0;
+    Eigen::Vector3d error = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < kPoses; ++i) {
+      errors.SetCentreError(i, k, error);
+      scale_error += kDrift * normal(random);
+      error.z() += scale_error;
+    }
+  }
+  for (const double window : {5.0, 10.0, 30.0}) {
+    EXPECT_NEAR(EstimateScaleDrift(errors, window), kDrift, 0.1 * kDrift) << window;
+  }
+  EXPECT_EQ(EstimateScaleDrift(errors, 1000.0), 0.0) << "shorter than the window";
+}
+
 TEST(PoseUncertainty, CovariancesAreRelativeToAnyPose) {
   auto problem = DriveBundle(40, 500, 0.3, 1);
   problem.fixed_frames = 2;

@@ -23,17 +23,19 @@ struct StreetOptions {
   int frames = 1000;
   int features = 150;
   double noise_px = 0.3;
-  double outliers = 0.1;     ///< ratio of tracks on objects that move by themselves
-  double pitch = 0.0;        ///< of the camera in the car, rad; positive looks down
-  double roll = 0.0;         ///< of the camera in the car, rad
-  double curvature = 0.0;    ///< amplitude of the path's curvature, rad/m
-  double hills = 0.0;        ///< maximum slope
-  double bare_from_m = 1e9;  ///< the road has no texture from here
-  double bare_to_m = 0.0;    ///< to here
-  bool road = true;          ///< else walls only
-  double heave = 0.0;        ///< relative amplitude of the camera's height, period 10 m: carried, not driven
-  double climb = 0.0;        ///< relative gain of height over the second half of the path: an aircraft
-  double lost_at_m = 1e9;    ///< the tracking restarts here with another scale
+  double outliers = 0.1;      ///< ratio of tracks on objects that move by themselves
+  double pitch = 0.0;         ///< of the camera in the car, rad; positive looks down
+  double roll = 0.0;          ///< of the camera in the car, rad
+  double curvature = 0.0;     ///< amplitude of the path's curvature, rad/m
+  double hills = 0.0;         ///< maximum slope
+  double bare_from_m = 1e9;   ///< the road has no texture from here
+  double bare_to_m = 0.0;     ///< to here
+  bool road = true;           ///< else walls only
+  double road_tracks_hz = 0;  ///< new tracks on the ground a second at most; 0: as many as the image shows
+  double pavement_m = 0.0;    ///< height of the pavements, which begin 3 m beside the road's middle
+  double heave = 0.0;         ///< relative amplitude of the camera's height, period 10 m: carried, not driven
+  double climb = 0.0;         ///< relative gain of height over the second half of the path: an aircraft
+  double lost_at_m = 1e9;     ///< the tracking restarts here with another scale
   unsigned seed = 1;
 };
 
@@ -94,18 +96,28 @@ class StreetSimulator {
     const double wall = 5.0 + 5.0 * Uniform();
     const Eigen::Vector3d from = T_world_cam.translation();
     const Eigen::Vector3d ray = T_world_cam.rotation() * x.homogeneous();
-    const auto above = [&](double depth) { return RoadHeight((from + depth * ray).z()) - (from + depth * ray).y(); };
+    const auto above = [&](double depth) {
+      const Eigen::Vector3d at = from + depth * ray;
+      return RoadHeight(at.z()) - (std::abs(at.x()) > 3.0 ? options_.pavement_m : 0.0) - at.y();
+    };
     constexpr double kRayStep = 0.1;
     for (double depth = 2.0; depth < 40.0; depth += kRayStep) {
       if (above(depth) < 0.0) {
         const double before = above(depth - kRayStep);
         const Eigen::Vector3d at = from + (depth - kRayStep * (1.0 - before / (before - above(depth)))) * ray;
         const bool bare = at.z() > options_.bare_from_m && at.z() < options_.bare_to_m;
-        return options_.road && !bare ? std::optional(at) : std::nullopt;
+        return options_.road && !bare && AddsRoadTrack() ? std::optional(at) : std::nullopt;
       }
       if (std::abs(depth * ray.x()) > wall) return from + depth * ray;
     }
     return std::nullopt;
+  }
+
+  bool AddsRoadTrack() {
+    const double time_s = 0.02 * static_cast<double>(street_.frames.size());
+    if (options_.road_tracks_hz > 0.0 && road_tracks_ >= options_.road_tracks_hz * time_s) return false;
+    ++road_tracks_;
+    return true;
   }
 
   double Uniform() { return std::uniform_real_distribution<double>(0.0, 1.0)(random_); }
@@ -168,6 +180,7 @@ class StreetSimulator {
   std::vector<Track> tracks_;
   std::map<std::int64_t, Eigen::Vector3d> positions_;
   std::int64_t next_id_ = 0;
+  int road_tracks_ = 0;
 };
 
 }  // namespace evo::odometry::testing

@@ -101,9 +101,10 @@ struct FinalRefinementOptions {
 struct GroundOptions {
   bool hold_height = true;
   double camera_height_m = 0.0;
-  double scale_drift_ratio = 0.002;
+  double scale_drift_ratio = 0.0;
   double common_sigma_ratio = 0.005;
-  double max_lateral_ratio = 0.8;
+  double max_lateral_ratio = 2.5;
+  double roll_drift = 0.001;
   double min_path_heights = 10.0;
 };
 

@@ -17,9 +17,12 @@ namespace evo::odometry {
 
 namespace {
 
-constexpr double kInitialWindow = 0.1;  // over the typical distance of the tracks, before the height is known
-constexpr double kWindow = 3.0;         // heights to either side that the path is smoothed over
-constexpr double kMaxDistance = 40.0;   // heights of arc length from the camera that observes a track to the track
+constexpr double kInitialWindow = 0.1;        // over the typical distance of the tracks, before the height is known
+constexpr double kWindow = 3.0;               // heights to either side that the path is smoothed over
+constexpr double kDriftWindow = 8.0;          // heights that the scale is averaged over to measure its drift
+constexpr double kDriftOverCovariance = 0.5;  // measured: the covariance is inflated for errors of the rotation
+constexpr double kUnknownScaleDrift = 0.002;  // over a path of one height, without a covariance of the poses
+constexpr double kMaxDistance = 40.0;  // heights of arc length from the camera that observes a track to the track
 
 /// All poses of a run in order of time.
 struct CameraPath {
@@ -48,8 +51,8 @@ double MedianDistance(const std::vector<TriangulatedTrack>& tracks, const Camera
   return Median(std::move(distances));
 }
 
-/// The tracks below the path. Beside it there are kerbs and parked cars, and near the image's border the tracks of a
-/// road drift outwards: at most `max_lateral_ratio` of the depth to the side.
+/// The tracks below the path, at most `max_lateral_ratio` of the depth to the side: farther out there are hardly any on
+/// the road, and they depend on its roll.
 std::vector<GroundObservation> FindGroundObservations(const PathFrame& path_frame,
                                                       const std::vector<TriangulatedTrack>& tracks, double max_distance,
                                                       double max_lateral_ratio) {
@@ -67,17 +70,31 @@ std::vector<GroundObservation> FindGroundObservations(const PathFrame& path_fram
 struct PathHeights {
   std::vector<double> inverse_heights;  // at every pose
   HeightProfile profile;
+  double scale_drift_ratio = 0.0;  // of the relative scale over a path of one height
 };
+
+/// The drift of the scale that the tracks leave, as GroundOptions::scale_drift_ratio.
+double ScaleDriftRatio(const GroundOptions& options, const std::vector<Segment>& segments, double height) {
+  if (options.scale_drift_ratio > 0.0) return options.scale_drift_ratio;
+  double ratio = 0.0;
+  for (const Segment& segment : segments) {
+    ratio = std::max(ratio, segment.uncertainty.ScaleDrift(kDriftWindow * height) * std::sqrt(height));
+  }
+  return ratio > 0.0 ? kDriftOverCovariance * ratio : kUnknownScaleDrift;
+}
 
 /// In two rounds: the path is smoothed over a few heights, which have to be known roughly for that.
 std::optional<PathHeights> MeasureHeights(const GroundOptions& options, const std::vector<TriangulatedTrack>& tracks,
-                                          const CameraPath& path) {
+                                          const CameraPath& path, const std::vector<Segment>* segments) {
   double window = kInitialWindow * MedianDistance(tracks, path);
   PathHeights heights;
   for (int round = 0; round < 2; ++round) {
     if (!(window > 0.0)) return std::nullopt;
     const PathFrame path_frame(path.positions, path.down, window);
-    HeightProfileOptions profile_options{options.scale_drift_ratio, path_frame.length(), {}};
+    const double height = window / kWindow;
+    heights.scale_drift_ratio = ScaleDriftRatio(options, *segments, height);
+    HeightProfileOptions profile_options{
+        heights.scale_drift_ratio / std::sqrt(height), options.roll_drift, path_frame.length(), {}};
     for (std::size_t i = 1; i < path.segment_begins.size(); ++i) {
       profile_options.scale_breaks.push_back(path_frame.arc_length(path.segment_begins[i]));
     }
@@ -151,7 +168,7 @@ void Rescale(const std::vector<double>& scales, const ScaleInformation& informat
 
 GroundScale ScaleByGround(const GroundOptions& options, const std::vector<Frame>& frames,
                           std::vector<Segment>* segments) {
-  const auto heights = MeasureHeights(options, TriangulateTracks(frames, *segments), ListPoses(*segments));
+  const auto heights = MeasureHeights(options, TriangulateTracks(frames, *segments), ListPoses(*segments), segments);
   const bool is_metric = options.camera_height_m > 0.0;
   if (!heights || (!is_metric && heights->profile.path_length_in_heights < options.min_path_heights)) {
     spdlog::log(is_metric ? spdlog::level::warn : spdlog::level::info,
@@ -166,7 +183,7 @@ GroundScale ScaleByGround(const GroundOptions& options, const std::vector<Frame>
   const double sigma = std::hypot(quality.relative_sigma, options.common_sigma_ratio);
   // A random walk that is smoothed to this standard deviation has errors correlated over this many heights.
   const double correlation_heights =
-      std::max(2.0 * kWindow, 2.0 * std::pow(quality.relative_sigma / options.scale_drift_ratio, 2));
+      std::max(2.0 * kWindow, 2.0 * std::pow(quality.relative_sigma / heights->scale_drift_ratio, 2));
   Rescale(scales, {sigma, height * correlation_heights}, frames, segments);
   const auto [min_scale, max_scale] = std::ranges::minmax(scales);
   spdlog::info(

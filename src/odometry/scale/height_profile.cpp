@@ -3,71 +3,34 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
 #include "evo/core/median.hpp"
-#include "evo/core/robust.hpp"
-#include "odometry/scale/random_walk_smoother.hpp"
+#include "odometry/scale/ground_search.hpp"
+#include "odometry/scale/plane_smoother.hpp"
 
 namespace evo::odometry {
 
 namespace {
 
-constexpr double kKernelWidth = 0.05;      // of the density of the heights' logarithms: twice a flat road's scatter
-constexpr double kKernelStep = 0.02;       // between the heights that are tried
-constexpr double kKernelReach = 3.0;       // widths
 constexpr double kMaxRelativeSigma = 0.1;  // a track less certain than this says nothing of the height
 constexpr double kRoughness = 0.01;        // of the ground, in heights
-constexpr double kRollSigma = 0.05;        // rad, prior
-constexpr double kBreakSigma = 0.3;        // relative change of the scale where it was lost
-constexpr double kMadToSigma = 1.4826;     // median absolute deviation of a Gaussian to its standard deviation
+// Relative error of the height that all tracks within an arc of one height have in common: a car rocks on its springs.
+constexpr double kRocking = 0.015;
+constexpr double kRollSigma = 0.05;     // rad, prior
+constexpr double kBreakSigma = 0.3;     // relative change of the scale where it was lost
+constexpr double kMadToSigma = 1.4826;  // median absolute deviation of a Gaussian to its standard deviation
 // The noise factor of tracks on the ground is near 1, that of other structure is larger.
 constexpr double kMinNoiseFactor = 0.1;
 constexpr double kMaxNoiseFactor = 2.0;
-// Relative distances from the profile within which observations take part, from coarse to fine; at 0 their noise
-// decides.
-constexpr std::array kGates = {0.3, 0.2, 0.15, 0.1, 0.07, 0.05, 0.03, 0.0, 0.0, 0.0};
-constexpr double kNoiseGateSigmas = 3.0;
+constexpr int kIterations = 10;
 constexpr double kMaxNodes = 1e5;  // bounds memory for whatever height outliers suggest
 constexpr std::size_t kMinTracks = 20;
-constexpr std::size_t kSectionNodes = 10;      // nodes (heights of arc length) on which most observations have to agree
-constexpr double kMinAgreeingInSection = 0.5;  // ratio of its observations
-constexpr double kMinAgreeingSections = 0.9;   // ratio, by their number of observations
-constexpr double kCoveredSigma = 0.01;         // relative, where the height counts as known
-
-/// The mode of the observations' inverse heights: the maximum of a kernel density over their logarithms, weighted by
-/// their certainty; 0 without any.
-double FindModeOfInverseHeights(const std::vector<GroundObservation>& observations) {
-  struct Kernel {
-    double log_height;
-    double weight;
-  };
-  std::vector<Kernel> kernels;
-  for (const auto& observation : observations) {
-    const double sigma = observation.sigma / observation.inverse_height;
-    kernels.push_back({std::log(observation.inverse_height), 1.0 / (sigma * sigma + kKernelWidth * kKernelWidth)});
-  }
-  if (kernels.empty()) return 0.0;
-  std::ranges::sort(kernels, {}, &Kernel::log_height);
-  const double min = kernels.front().log_height;
-  Kernel mode{0.0, 0.0};
-  std::size_t begin = 0;
-  const int steps = static_cast<int>((kernels.back().log_height - min) / kKernelStep) + 1;
-  for (int step = 0; step <= steps; ++step) {
-    const double center = min + kKernelStep * step;
-    while (begin < kernels.size() && kernels[begin].log_height < center - kKernelReach * kKernelWidth) ++begin;
-    double density = 0.0;
-    for (std::size_t i = begin; i < kernels.size(); ++i) {
-      if (!(kernels[i].log_height < center + kKernelReach * kKernelWidth)) break;
-      const double u = (kernels[i].log_height - center) / kKernelWidth;
-      density += kernels[i].weight * std::exp(-0.5 * u * u);
-    }
-    if (density > mode.weight) mode = {center, density};
-  }
-  return std::exp(mode.log_height);
-}
+constexpr std::size_t kSectionNodes = 5;  // nodes (heights of arc length) to a section of the search
+constexpr double kMinEvidence = 10.0;     // without a ground, the best of all heights and rolls reaches about 4
+constexpr double kMinSeenRatio = 0.5;     // of the path, in sections with tracks on the ground
+constexpr double kCoveredSigma = 0.01;    // relative, where the height counts as known
 
 /// A place between two nodes.
 struct NodeFraction {
@@ -75,11 +38,16 @@ struct NodeFraction {
   double fraction;  // of the way to the next node
 };
 
-NodeFraction Locate(const HeightProfile& profile, double arc_length) {
-  const std::size_t last = profile.inverse_heights.size() - 1;
-  const double position = std::clamp(arc_length / profile.spacing, 0.0, static_cast<double>(last));
-  const std::size_t node = std::min(static_cast<std::size_t>(position), last - 1);
+NodeFraction Locate(double spacing, std::size_t nodes, double arc_length) {
+  const double position = std::clamp(arc_length / spacing, 0.0, static_cast<double>(nodes - 1));
+  const std::size_t node = std::min(static_cast<std::size_t>(position), nodes - 2);
   return {node, position - static_cast<double>(node)};
+}
+
+double MedianInverseHeight(const std::vector<GroundObservation>& observations) {
+  std::vector<double> inverse_heights;
+  for (const auto& o : observations) inverse_heights.push_back(o.inverse_height);
+  return Median(std::move(inverse_heights));
 }
 
 class HeightProfileFitter {
@@ -91,35 +59,70 @@ class HeightProfileFitter {
 
   std::optional<HeightProfile> Fit() {
     if (observations_.size() < kMinTracks) return std::nullopt;
-    Initialize();
-    for (const double gate : kGates) {
-      EstimateNoiseFactor(gate);
-      if (!Iterate(gate)) return std::nullopt;
+    double inverse_height = MedianInverseHeight(observations_);
+    for (int round = 0; round < 2; ++round) {  // the second with nodes that are a height apart
+      SetNodes(inverse_height);
+      Search();
+      inverse_height = Median(profile_.inverse_heights);
     }
-    spdlog::debug("odometry: {} of {} tracks below the path lie on the ground, noise factor {:.2f}, roll {:.4f} rad",
-                  profile_.quality.inliers, observations_.size(), noise_factor_, profile_.roll);
-    if (noise_factor_ >= kMaxNoiseFactor || AgreeingRatio() < kMinAgreeingSections) return std::nullopt;
+    const GroundLikelihood likelihood(observations_);
+    for (int i = 0; i < kIterations; ++i) {
+      EstimateGroundProbabilities(likelihood);
+      Smooth();
+    }
     Summarize();
-    return profile_;
+    const HeightProfileQuality& quality = profile_.quality;
+    spdlog::debug(
+        "odometry: {} of {} tracks below the path lie on the ground, evidence {:.1f}, noise factor {:.2f}, "
+        "roll {:.4f} rad, on {:.0f} % of the path, {:.0f} % covered, uncertain by {:.2f} %",
+        quality.inliers, observations_.size(), quality.evidence, noise_factor_, Median(profile_.rolls),
+        100.0 * SeenRatio(), 100.0 * quality.covered_ratio, 100.0 * quality.relative_sigma);
+    const bool found = quality.inliers >= kMinTracks && quality.evidence >= kMinEvidence &&
+                       noise_factor_ < kMaxNoiseFactor && SeenRatio() >= kMinSeenRatio;
+    return found ? std::optional(profile_) : std::nullopt;
   }
 
  private:
-  /// Every part between breaks starts at the mode of its heights.
-  void Initialize() {
-    const double mode = FindModeOfInverseHeights(observations_);
-    profile_.spacing = std::max(1.0 / mode, options_.path_length / kMaxNodes);
-    profile_.inverse_heights.assign(static_cast<std::size_t>(options_.path_length / profile_.spacing) + 2, mode);
+  NodeFraction LocateNode(double arc_length) const {
+    return Locate(profile_.spacing, profile_.inverse_heights.size(), arc_length);
+  }
+
+  std::size_t NearestNode(const GroundObservation& o) const {
+    const auto [node, fraction] = LocateNode(o.arc_length);
+    return fraction < 0.5 ? node : node + 1;
+  }
+
+  void SetNodes(double inverse_height) {
+    profile_.spacing = std::max(1.0 / inverse_height, options_.path_length / kMaxNodes);
+    profile_.inverse_heights.assign(static_cast<std::size_t>(options_.path_length / profile_.spacing) + 2,
+                                    inverse_height);
+    profile_.rolls.assign(profile_.inverse_heights.size(), 0.0);
     break_after_.assign(profile_.inverse_heights.size(), false);
-    for (const double arc_length : options_.scale_breaks) break_after_[Locate(profile_, arc_length).node] = true;
-    std::vector<std::vector<GroundObservation>> node_observations(break_after_.size());
-    for (const auto& o : observations_) node_observations[Locate(profile_, o.arc_length).node].push_back(o);
-    std::vector<GroundObservation> part;
-    for (std::size_t begin = 0, k = 0; k < break_after_.size(); ++k) {
-      part.insert(part.end(), node_observations[k].begin(), node_observations[k].end());
-      if (!break_after_[k] && k + 1 < break_after_.size()) continue;
-      const double part_mode = part.size() < kMinTracks ? mode : FindModeOfInverseHeights(part);
-      for (; begin <= k; ++begin) profile_.inverse_heights[begin] = part_mode;
-      part.clear();
+    for (const double arc_length : options_.scale_breaks) break_after_[LocateNode(arc_length).node] = true;
+  }
+
+  /// Relative standard deviation of the height's change from a node to the next.
+  double StepSigma(std::size_t node) const {
+    return break_after_[node] ? kBreakSigma : options_.scale_drift * std::sqrt(profile_.spacing);
+  }
+
+  void Search() {
+    const std::size_t nodes = profile_.inverse_heights.size();
+    GroundSections sections;
+    for (const auto& o : observations_) sections.section.push_back(LocateNode(o.arc_length).node / kSectionNodes);
+    const std::size_t count = (nodes - 1) / kSectionNodes + 1;
+    for (std::size_t k = 0; k + 1 < count; ++k) {
+      double variance = 0.0;
+      for (std::size_t node = k * kSectionNodes; node < (k + 1) * kSectionNodes; ++node) {
+        variance += std::pow(StepSigma(node), 2);
+      }
+      sections.step_sigmas.push_back(std::sqrt(variance));
+    }
+    const FoundGround ground = SearchGround(observations_, sections);
+    profile_.quality.evidence = ground.evidence;
+    for (std::size_t node = 0; node < nodes; ++node) {
+      profile_.inverse_heights[node] = std::exp(ground.log_inverse_heights[node / kSectionNodes]);
+      profile_.rolls[node] = ground.roll;
     }
   }
 
@@ -128,97 +131,88 @@ class HeightProfileFitter {
     double sigma;  // relative, with the estimated noise factor
   };
   Residual Compare(const GroundObservation& o) const {
+    const auto [node, fraction] = LocateNode(o.arc_length);
     const double x = profile_.InverseHeight(o.arc_length);
-    return {o.inverse_height / x - (1.0 - profile_.roll * o.lateral_ratio),
-            std::hypot(noise_factor_ * o.sigma / x, kRoughness)};
+    const double roll = (1.0 - fraction) * profile_.rolls[node] + fraction * profile_.rolls[node + 1];
+    return {o.inverse_height / x - (1.0 - roll * o.lateral_ratio), std::hypot(noise_factor_ * o.sigma / x, kRoughness)};
   }
 
-  /// The factor common to the observations' standard deviations.
-  void EstimateNoiseFactor(double gate) {
+  /// Also the factor common to the observations' standard deviations.
+  void EstimateGroundProbabilities(const GroundLikelihood& likelihood) {
+    ground_probabilities_.resize(observations_.size());
     std::vector<double> ratios;
-    for (const auto& o : observations_) {
+    for (std::size_t i = 0; i < observations_.size(); ++i) {
+      const GroundObservation& o = observations_[i];
       const auto [error, sigma] = Compare(o);
-      if (std::abs(error) > std::max(gate, kNoiseGateSigmas * sigma)) continue;
+      ground_probabilities_[i] = likelihood.GroundProbability(i, error, sigma);
+      if (ground_probabilities_[i] < 0.5) continue;
       ratios.push_back(std::abs(error) * profile_.InverseHeight(o.arc_length) / o.sigma);
     }
+    profile_.quality.inliers = ratios.size();
     noise_factor_ = std::clamp(kMadToSigma * Median(ratios), kMinNoiseFactor, kMaxNoiseFactor);
   }
 
-  /// One iteration of reweighted least squares for the heights and the roll; false if too few observations agree.
-  bool Iterate(double gate) {
-    RandomWalkSmoother smoother(profile_.inverse_heights.size());
-    double roll_weight = 1.0 / (kRollSigma * kRollSigma);
-    double roll_right_side = 0.0;
-    std::size_t inliers = 0;
-    for (const auto& o : observations_) {
-      const auto [error, sigma] = Compare(o);
-      const double u = error / std::max(gate, kTukeyWidth * sigma);
-      if (std::abs(u) >= 1.0) continue;
-      ++inliers;
-      const double weight = std::pow((1.0 - u * u) / sigma, 2);  // Tukey's, over the variance
-      const auto [node, fraction] = Locate(profile_, o.arc_length);
+  void Smooth() {
+    PlaneSmoother smoother(profile_.inverse_heights.size());
+    std::vector<double> weights;
+    std::vector<double> node_weights(profile_.inverse_heights.size());  // relative
+    for (std::size_t i = 0; i < observations_.size(); ++i) {
+      weights.push_back(ground_probabilities_[i] / std::pow(Compare(observations_[i]).sigma, 2));
+      node_weights[NearestNode(observations_[i])] += weights.back();
+    }
+    for (std::size_t i = 0; i < observations_.size(); ++i) {
+      const GroundObservation& o = observations_[i];
+      const auto [node, fraction] = LocateNode(o.arc_length);
       const double x = profile_.InverseHeight(o.arc_length);
-      smoother.AddObservation(node, fraction, 1.0 - profile_.roll * o.lateral_ratio, o.inverse_height,
-                              weight / (x * x));
-      roll_weight += weight * o.lateral_ratio * o.lateral_ratio;
-      roll_right_side += weight * o.lateral_ratio * (1.0 - o.inverse_height / x);
+      const double common = 1.0 + kRocking * kRocking * node_weights[NearestNode(o)];
+      smoother.AddObservation(node, fraction, {1.0, -o.lateral_ratio}, o.inverse_height, weights[i] / (common * x * x));
     }
-    profile_.quality.inliers = inliers;
-    if (inliers < kMinTracks) return false;
     for (std::size_t k = 0; k + 1 < break_after_.size(); ++k) {
-      const double heights = profile_.spacing * profile_.inverse_heights[k];
-      const double relative_sigma = break_after_[k] ? kBreakSigma : options_.scale_drift_ratio * std::sqrt(heights);
-      const double sigma = relative_sigma * profile_.inverse_heights[k];
-      smoother.AddStep(k, 1.0 / (sigma * sigma));
+      const double x = profile_.inverse_heights[k];
+      const double height_sigma = StepSigma(k) * x;
+      const double roll_sigma = options_.roll_drift * std::sqrt(profile_.spacing * x) * x;
+      smoother.AddStep(k, {1.0 / (height_sigma * height_sigma), 1.0 / (roll_sigma * roll_sigma)});
     }
-    auto solution = smoother.Solve();
-    profile_.inverse_heights = std::move(solution.values);
-    variances_ = std::move(solution.variances);
-    profile_.roll = roll_right_side / roll_weight;
-    return true;
+    const double roll_sigma = kRollSigma * profile_.inverse_heights[0];
+    smoother.AddPrior(0, {0.0, 0.0}, {0.0, 1.0 / (roll_sigma * roll_sigma)});
+    const auto solution = smoother.Solve();
+    relative_sigmas_.clear();
+    for (std::size_t k = 0; k < solution.values.size(); ++k) {
+      profile_.inverse_heights[k] = solution.values[k].x();
+      profile_.rolls[k] = solution.values[k].y() / solution.values[k].x();
+      relative_sigmas_.push_back(std::sqrt(solution.covariances[k](0, 0)) / solution.values[k].x());
+    }
   }
 
-  /// Ratio of the sections in which most observations agree with the profile, by their number of observations.
-  double AgreeingRatio() const {
-    std::vector<std::size_t> all(profile_.inverse_heights.size() / kSectionNodes + 1);
-    std::vector<std::size_t> agreeing(all.size());
-    for (const auto& o : observations_) {
-      const auto [error, sigma] = Compare(o);
-      const std::size_t k = Locate(profile_, o.arc_length).node / kSectionNodes;
-      ++all[k];
-      if (std::abs(error) < kTukeyWidth * sigma) ++agreeing[k];
+  /// Ratio of the sections in which there are tracks on the ground.
+  double SeenRatio() const {
+    std::vector<bool> seen((profile_.inverse_heights.size() - 1) / kSectionNodes + 1, false);
+    for (std::size_t i = 0; i < observations_.size(); ++i) {
+      if (ground_probabilities_[i] > 0.5) seen[LocateNode(observations_[i].arc_length).node / kSectionNodes] = true;
     }
-    std::size_t in_agreement = 0;
-    for (std::size_t k = 0; k < all.size(); ++k) {
-      const bool agrees = static_cast<double>(agreeing[k]) >= kMinAgreeingInSection * static_cast<double>(all[k]);
-      if (agrees) in_agreement += all[k];
-    }
-    return static_cast<double>(in_agreement) / static_cast<double>(observations_.size());
+    return static_cast<double>(std::ranges::count(seen, true)) / static_cast<double>(seen.size());
   }
 
   void Summarize() {
     profile_.path_length_in_heights = options_.path_length / profile_.spacing;
-    std::vector<double> sigmas;
-    for (std::size_t k = 0; k < variances_.size(); ++k) {
-      sigmas.push_back(std::sqrt(variances_[k]) / profile_.inverse_heights[k]);
-    }
-    const auto covered = std::ranges::count_if(sigmas, [](double sigma) { return sigma < kCoveredSigma; });
-    profile_.quality.covered_ratio = static_cast<double>(covered) / static_cast<double>(sigmas.size());
-    profile_.quality.relative_sigma = Median(std::move(sigmas));
+    const auto covered = std::ranges::count_if(relative_sigmas_, [](double sigma) { return sigma < kCoveredSigma; });
+    profile_.quality.covered_ratio = static_cast<double>(covered) / static_cast<double>(relative_sigmas_.size());
+    profile_.quality.relative_sigma = Median(relative_sigmas_);
   }
 
   const HeightProfileOptions& options_;
   std::vector<GroundObservation> observations_;
   HeightProfile profile_;
-  std::vector<bool> break_after_;  // the scale was lost between each node and the next
-  std::vector<double> variances_;  // of the nodes' inverse heights
+  std::vector<bool> break_after_;             // the scale was lost between each node and the next
+  std::vector<double> relative_sigmas_;       // of the nodes' inverse heights
+  std::vector<double> ground_probabilities_;  // of the observations
   double noise_factor_ = 1.0;
 };
 
 }  // namespace
 
 double HeightProfile::InverseHeight(double arc_length) const {
-  const auto [node, fraction] = Locate(*this, arc_length);
+  const auto [node, fraction] = Locate(spacing, inverse_heights.size(), arc_length);
   return (1.0 - fraction) * inverse_heights[node] + fraction * inverse_heights[node + 1];
 }
 

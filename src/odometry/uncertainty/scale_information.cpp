@@ -59,6 +59,24 @@ std::vector<double> TrackScaleErrors(const std::vector<Eigen::Vector3d>& step_er
 
 }  // namespace
 
+double EstimateScaleDrift(const PoseErrorSamples& errors, double window) {
+  const PathSteps path(errors.T_cam_world());
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (Eigen::Index k = 0; k < errors.samples(); ++k) {
+    const auto scale_errors = TrackScaleErrors(StepErrors(errors, k, path, path), path, window);
+    std::size_t to = 0;
+    for (std::size_t i = 0; i < errors.poses(); ++i) {
+      while (to < errors.poses() && path.arc_lengths[to] - path.arc_lengths[i] < window) ++to;
+      if (to == errors.poses()) break;
+      sum += std::pow(scale_errors[to] - scale_errors[i], 2);
+      ++count;
+    }
+  }
+  // Means of a random walk over adjoining windows differ by 2/3 of its variance over a window.
+  return count > 0 ? std::sqrt(1.5 * sum / (static_cast<double>(count) * window)) : 0.0;
+}
+
 void ApplyScaleInformation(const ScaleInformation& information, std::vector<geometry::SE3> T_cam_world,
                            PoseErrorSamples* errors) {
   const double correlation_length = information.correlation_length;

@@ -22,6 +22,10 @@ std::vector<geometry::Matrix6d> SegmentUncertainty::Covariances(bool scale_is_fr
   return covariances;
 }
 
+double SegmentUncertainty::ScaleDrift(double window) const {
+  return adjusted_errors_ ? EstimateScaleDrift(*adjusted_errors_, window) : 0.0;
+}
+
 void SegmentUncertainty::ApplyScale(const ScaleInformation& information, const std::vector<double>& scales,
                                     const std::vector<geometry::SE3>& T_cam_world) {
   if (!adjusted_errors_) return;

@@ -25,6 +25,9 @@ class SegmentUncertainty {
   /// Covariances of all poses relative to the first adjusted one, see PoseErrorSamples; empty if nothing is known.
   std::vector<geometry::Matrix6d> Covariances(bool scale_is_free) const;
 
+  /// See EstimateScaleDrift; 0 if nothing is known.
+  double ScaleDrift(double window) const;
+
   /// After every pose got its scale `scales`; `T_cam_world` are all poses with it, of the same rotations.
   void ApplyScale(const ScaleInformation& information, const std::vector<double>& scales,
                   const std::vector<geometry::SE3>& T_cam_world);
