@@ -34,11 +34,11 @@ void Register(Parameters& p, StreetOptions& o) {
         "offset of the camera from the centre of its lane, positive: to the right (m)");
   p.Add("street.road_contrast", &o.road_contrast, 0.0, 1.0,
         "contrast of asphalt, pavements and ground over that of worn ones; markings and kerbs keep theirs");
-  p.Add("street.facade_contrast", &o.facade_contrast, 0.0, 1.0, "contrast of the facades over that of richly detailed ones");
+  p.Add("street.facade_contrast", &o.facade_contrast, 0.0, 1.0,
+        "contrast of the facades over that of richly detailed ones");
   p.Add("street.wetness", &o.wetness, 0.0, 1.0,
         "how much the road mirrors the lamps, windows and the sky, as a ratio of what a wet one does");
-  p.Add("street.light", &o.light, {"day", "dusk", "night"},
-        "dusk and night: street lamps, head lamps and lit windows");
+  p.Add("street.light", &o.light, {"day", "dusk", "night"}, "dusk and night: street lamps, head lamps and lit windows");
   p.Add("street.dusk_ambient", &o.dusk_ambient, 0.0, 1.0, "ambient light at dusk over that of the day");
   p.Add("street.night_ambient", &o.night_ambient, 0.0, 1.0, "ambient light at night over that of the day");
   p.Add("street.head_lamps", &o.head_lamps, 0.0, 1000.0,

@@ -72,7 +72,8 @@ TEST(RandomValue, MultipliesWithAnotherParameter) {
 }
 
 TEST(RandomValue, RefusesOtherForms) {
-  for (const char* bad : {"3..1", "0..1 log", "-1..1 log", "day log", "1..2 * x", "a * -1", "a | ", "a * 0", "day of b"}) {
+  for (const char* bad :
+       {"3..1", "0..1 log", "-1..1 log", "day log", "1..2 * x", "a * -1", "a | ", "a * 0", "day of b"}) {
     EXPECT_FALSE(RandomValue::Parse(bad)) << bad;
   }
 }

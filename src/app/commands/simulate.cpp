@@ -160,8 +160,9 @@ std::string FormatScene(const SimulateArguments& arguments, const SceneConfig& c
                         const std::optional<simulation::DrawnNames>& drawn) {
   std::string text;
   if (drawn) {
-    text = fmt::format("# Drawn from {} by seed {}\n# drawn:", fs::path(arguments.common.config_file).filename().string(),
-                       config.scene.seed);
+    text =
+        fmt::format("# Drawn from {} by seed {}\n# drawn:", fs::path(arguments.common.config_file).filename().string(),
+                    config.scene.seed);
     for (const auto& [name, alternative] : *drawn) text += fmt::format(" {}={}", name, alternative);
     text += '\n';
   }

@@ -29,8 +29,7 @@ std::optional<BonnetMirror::Reflection> BonnetMirror::Reflect(const Eigen::Vecto
   const double cosine = std::clamp(-direction.dot(normal), 0.0, 1.0);
   // Fresnel's reflection in Schlick's approximation (An Inexpensive BRDF Model, 1994).
   const double reflectivity = bonnet_.reflectivity + (1.0 - bonnet_.reflectivity) * std::pow(1.0 - cosine, 5.0);
-  Eigen::Vector3d mirrored =
-      bonnet_.R_vehicle_cam.conjugate() * (direction - 2.0 * direction.dot(normal) * normal);
+  Eigen::Vector3d mirrored = bonnet_.R_vehicle_cam.conjugate() * (direction - 2.0 * direction.dot(normal) * normal);
   mirrored.z() = std::max(mirrored.z(), kMinForward);
   return Reflection{mirrored.head<2>() / mirrored.z(), reflectivity};
 }

@@ -104,6 +104,7 @@ Renderer::Renderer(const Scene& scene, const geometry::Camera& camera, int sampl
   }
   centres_ = CastRays(1);
   samples_ = samples == 1 ? centres_ : CastRays(samples);
+  max_spacing_ = std::exp2(*std::max_element(centres_.log2_spacing.begin(), centres_.log2_spacing.end()));
 }
 
 Renderer::Rays Renderer::CastRays(int samples) {
@@ -152,8 +153,7 @@ Renderer::VisibleSet Renderer::FindVisible(const Tile& tile, TimeNs from, TimeNs
                                            const geometry::SE3& T_world_cam_from,
                                            const geometry::SE3& T_world_cam_to) const {
   RayFrustum rays = TileFrustum(tile);
-  const float pixel = std::exp2(*std::max_element(centres_.log2_spacing.begin(), centres_.log2_spacing.end()));
-  rays = {rays.x0 - pixel, rays.x1 + pixel, rays.y0 - pixel, rays.y1 + pixel};
+  rays = {rays.x0 - max_spacing_, rays.x1 + max_spacing_, rays.y0 - max_spacing_, rays.y1 + max_spacing_};
   return {hierarchy_.Find(rays, from, to, T_world_cam_from, T_world_cam_to)};
 }
 

@@ -85,6 +85,7 @@ class Renderer {
   std::vector<std::uint8_t> has_no_ray_;  ///< per pixel: the lens model has no ray for part of it
   Rays samples_;
   Rays centres_;
+  float max_spacing_ = 0.0F;  ///< of two neighbouring pixels on the plane z = 1
 };
 
 }  // namespace evo::simulation

@@ -15,11 +15,11 @@ namespace evo::simulation {
 
 namespace {
 
-constexpr double kMinThreshold = 0.01;  // v2e's limit: a pixel below it fires at every change
-constexpr double kMeanSwitchTime = 1.5;  // s between two switches of a pixel that comes and goes
+constexpr double kMinThreshold = 0.01;          // v2e's limit: a pixel below it fires at every change
+constexpr double kMeanSwitchTime = 1.5;         // s between two switches of a pixel that comes and goes
 constexpr std::uint64_t kHotStream = 0x686F74;  // "hot"
-constexpr float kBrightNoise = 0.25F;   // shot noise rate at radiance 1 over that in the dark, as in v2e
-constexpr float kMaxRadiance = 1e30F;   // FastLog still holds after dark_radiance is added
+constexpr float kBrightNoise = 0.25F;           // shot noise rate at radiance 1 over that in the dark, as in v2e
+constexpr float kMaxRadiance = 1e30F;           // FastLog still holds after dark_radiance is added
 constexpr TimeNs kNotStarted = std::numeric_limits<TimeNs>::min();
 constexpr TimeNs kMicrosecond = 1000;
 constexpr float kRefractory = std::numeric_limits<float>::quiet_NaN();  // amplifier_ during the refractory period
@@ -111,7 +111,8 @@ void EventSensor::InitializeHotPixel(std::size_t pixel, float leak, const Sensor
 
 /// Switches the pixels of `tile` that come and go on or off if it is time to at `t`.
 void EventSensor::SwitchIntermittentPixels(const Tile& tile, TimeNs t) {
-  for (std::size_t row = static_cast<std::size_t>(tile.y0); row < static_cast<std::size_t>(tile.y0 + tile.height); ++row) {
+  for (std::size_t row = static_cast<std::size_t>(tile.y0); row < static_cast<std::size_t>(tile.y0 + tile.height);
+       ++row) {
     for (std::size_t i = row_intermittent_[row]; i < row_intermittent_[row + 1]; ++i) {
       IntermittentPixel& p = intermittent_[i];
       const auto column = static_cast<int>(p.pixel % width_);

@@ -48,8 +48,8 @@ class PedestrianFactory {
     for (const double side : {-1.0, 1.0}) {
       const int leg = AddBody([=](double t) {
         const double swing = kSwing * side * std::sin(2.0 * std::numbers::pi * walked_m(t) / kStride);
-        return walk(t) * geometry::SE3(Eigen::Quaterniond(Eigen::AngleAxisd(swing, Eigen::Vector3d::UnitX())),
-                                       kHip * kUp);
+        return walk(t) *
+               geometry::SE3(Eigen::Quaterniond(Eigen::AngleAxisd(swing, Eigen::Vector3d::UnitX())), kHip * kUp);
       });
       AddCross(leg, leg_, 0.0, -kHip, 0.17, 0.1 * side, dark);
     }
@@ -106,7 +106,8 @@ void AddPedestrians(const StreetContext& context) {
       return PoseAt(*plan, plan->begin() + (passed < 0.0 ? passed + length : passed), lateral,
                     speed > 0.0 ? 0.0 : std::numbers::pi);
     };
-    pedestrians.Build(walk, [=](double t) { return std::abs(speed) * t; }, &random);
+    pedestrians.Build(
+        walk, [=](double t) { return std::abs(speed) * t; }, &random);
   }
 }
 
