@@ -30,8 +30,8 @@ examples:
   python3 -m bench worlds --seeds 3,7 --methods em --keep --set tracker.features=300
   python3 -m bench worlds --seeds 1001-1100 --jobs 2"""
 HELD_BACK = range(1001, 1101)
-# True depth is not needed: it costs time and disk.
-SIMULATION = ("simulation.depth_hz=0",)
+# True depth and images are not needed: they cost time and disk.
+SIMULATION = ("simulation.depth_hz=0", "simulation.image_hz=0")
 
 
 def seed_list(text: str) -> list[str]:
