@@ -11,7 +11,6 @@
 #include "simulation/world/scene.hpp"
 #include "simulation/world/street.hpp"
 #include "simulation/world/textures.hpp"
-#include "simulation/world/world.hpp"
 
 // What the random drives need of the world: lanes, moving bodies, light and contrast.
 
