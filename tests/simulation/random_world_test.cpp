@@ -57,8 +57,14 @@ TEST(RandomWorld, EveryDrawnSceneCanBeMade) {
 TEST(RandomWorld, CameraParametersMakeACalibration) {
   SceneOptions options = Drive();
   options.calibration = "camera";
-  options.camera = {.width_px = 640, .height_px = 480, .focal_px = 400.0, .centre_x_px = 5.0, .centre_y_px = -3.0,
-                    .distortion = "radtan", .k1 = -0.2, .k2 = 0.05};
+  options.camera = {.width_px = 640,
+                    .height_px = 480,
+                    .focal_px = 400.0,
+                    .centre_x_px = 5.0,
+                    .centre_y_px = -3.0,
+                    .distortion = "radtan",
+                    .k1 = -0.2,
+                    .k2 = 0.05};
   const geometry::Calibration found = MakeRun(options).camera.calibration();
   EXPECT_EQ(found.distortion, geometry::Distortion::kRadTan);
   EXPECT_EQ(found.width, 640);
@@ -123,7 +129,9 @@ TEST(RandomWorld, CrossingPedestriansAreOutOfTheLaneWhenTheCameraComes) {
       for (double t = 0.0; t <= 12.0; t += 0.05) {
         const Eigen::Vector3d place = PositionOf(*run.scene, i, t);
         const double ahead = place.z() - run.T_world_cam(FromSeconds(t)).translation().z();
-        if (ahead > 0.0 && ahead < 5.0) EXPECT_GT(std::abs(place.x()), 1.2) << seed << ' ' << i << ' ' << t;
+        if (ahead > 0.0 && ahead < 5.0) {
+          EXPECT_GT(std::abs(place.x()), 1.2) << seed << ' ' << i << ' ' << t;
+        }
         lowest = std::min(lowest, place.x()), highest = std::max(highest, place.x());
       }
       crossed += lowest < -1.0 && highest > 1.0 ? 1 : 0;

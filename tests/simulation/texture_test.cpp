@@ -86,7 +86,9 @@ TEST(Texture, LessContrastKeepsTheMeanOnAllLevels) {
       const double u = random.Uniform(0.0, 16.0);
       const Texel a = before.Lookup(u, 2.0 * u, footprint), b = after.Lookup(u, 2.0 * u, footprint);
       EXPECT_EQ(a.coverage, b.coverage);
-      if (a.coverage > 0.01F) EXPECT_NEAR(b.reflectance - mean, 0.25F * (a.reflectance - mean), 1e-4F);
+      if (a.coverage > 0.01F) {
+        EXPECT_NEAR(b.reflectance - mean, 0.25F * (a.reflectance - mean), 1e-4F);
+      }
     }
   }
 }
