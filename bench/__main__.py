@@ -13,6 +13,7 @@ COMMANDS = {
     "scenes": "bench.scene_costs",
     "odometry": "bench.odometry",
     "ablation": "bench.odometry",
+    "worlds": "bench.worlds",
     "evaluation": "bench.evaluation",
     "all": "bench.all_benchmarks",
     "docs": "bench.docs",
@@ -26,6 +27,7 @@ usage: python3 -m bench COMMAND [OPTION...]      (--help after a command lists i
   scenes       what the simulated scenes are like, cost, and how they are followed
   odometry     errors, coverage and speed of the whole pipeline: ours, the paper's, variants
   ablation     the odometry with one ingredient switched off at a time
+  worlds       the whole pipeline on drives that are drawn at random
   evaluation   time of the evaluation
   all          all of these; --quick in about 25 minutes on two cores
   docs         writes docs/benchmarks.md from the results of one build

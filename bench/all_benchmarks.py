@@ -12,8 +12,8 @@ from bench.program import find_program
 from bench.recordings import parse_recording
 
 DESCRIPTION = """\
-Runs all benchmarks into their usual folders: tracking, scaling, scenes, odometry, ablation and evaluation. Interrupted
-and called again it goes on where it ended. `python3 -m bench docs` then writes docs/benchmarks.md. In full it takes
+Runs all benchmarks into their usual folders: tracking, scaling, scenes, odometry, ablation, worlds and evaluation.
+Interrupted and called again it goes on where it ended. `python3 -m bench docs` then writes docs/benchmarks.md. In full it takes
 hours; --quick takes about 25 minutes on two cores (few seeds and short parts, no scaling)."""
 EXAMPLES = """\
 examples:
@@ -21,9 +21,11 @@ examples:
   python3 -m bench all --quick --recording data_samples/street
   python3 -m bench all --out /data/out --recording /data/street_12s"""
 MODULES = {"tracking": "bench.tracking", "scaling": "bench.scaling", "scenes": "bench.scene_costs",
-           "odometry": "bench.odometry", "ablation": "bench.odometry", "evaluation": "bench.evaluation"}
+           "odometry": "bench.odometry", "ablation": "bench.odometry", "worlds": "bench.worlds",
+           "evaluation": "bench.evaluation"}
 FOLDERS = {"tracking": "bench_tracking", "scaling": "bench_tracking", "scenes": "bench_scenes",
-           "odometry": "bench_odometry", "ablation": "bench_odometry", "evaluation": "bench_evaluation"}
+           "odometry": "bench_odometry", "ablation": "bench_odometry", "worlds": "bench_worlds",
+           "evaluation": "bench_evaluation"}
 WITH_RECORDINGS = ("tracking", "odometry")
 
 

@@ -29,6 +29,7 @@ TITLES = {
     "ablation": "What the odometry is made of",
     "scaling": "Time and memory of the tracker",
     "scenes": "Scenes",
+    "worlds": "Random worlds",
     "evaluation": "Evaluation",
 }
 ABOUT = {
@@ -38,6 +39,8 @@ ABOUT = {
     "ablation": "Each row switches one ingredient off. In parentheses: the worst of the seeds.",
     "scaling": "One scene and seed. With `thresholds_...` the sensor's thresholds are that share of the scene's.",
     "scenes": "What the simulated sequences are like, what they cost, and how they are followed.",
+    "worlds": "Drives that are drawn at random, see [simulation.md](simulation.md#random-scenes). 90 %: nine of ten drives "
+              "are as good or better.",
     "evaluation": "Poses at 20 Hz along a drive.",
 }
 Record = dict[str, Any]
@@ -78,10 +81,21 @@ def each(records: dict[str, Record], name: str) -> str:
     return "; ".join(values)
 
 
+def in_ranges(seeds: list[str]) -> str:
+    """Seeds between commas, three and more in a row as a range."""
+    runs: list[list[int]] = []
+    for seed in map(int, seeds):
+        if runs and seed == runs[-1][-1] + 1:
+            runs[-1].append(seed)
+        else:
+            runs.append([seed])
+    return ", ".join(f"{run[0]}-{run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in runs)
+
+
 def stamp(records: dict[str, Record], program: Program) -> str:
     """Build, machine and days."""
     days = sorted(day for record in records.values() for day in record["measured"])
-    seeds = "; ".join(f"{name} {', '.join(record['seeds'])}" for name, record in records.items() if record["seeds"])
+    seeds = "; ".join(f"{name} {in_ranges(record['seeds'])}" for name, record in records.items() if record["seeds"])
     period = " to ".join(dict.fromkeys([days[0], days[-1]])) if days else "-"
     lines = [
         ("commit", each(records, "commit") or program.source_state),

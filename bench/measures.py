@@ -117,6 +117,27 @@ def last_track_stamp(tracks: Path) -> str | None:
     return text.splitlines()[-1].split()[1] if text else None
 
 
+def resting_share(tracks: Path) -> float | None:
+    """The share of the observations that belong to tracks of 15 frames and more which move by less than 6 px/s."""
+    first: dict[str, list[float]] = {}
+    last: dict[str, list[float]] = {}
+    counts: dict[str, int] = {}
+    for line in (read_text(tracks) or "").splitlines():
+        if not line or line.startswith("#"):
+            continue
+        name, *values = line.split()[:4]
+        position = [float(value) for value in values]
+        first.setdefault(name, position)
+        last[name] = position
+        counts[name] = counts.get(name, 0) + 1
+    resting = 0
+    for name, count in counts.items():
+        (t0, x0, y0), (t1, x1, y1) = first[name], last[name]
+        if count >= 15 and (x1 - x0) ** 2 + (y1 - y0) ** 2 < (6 * (t1 - t0)) ** 2:
+            resting += count
+    return ratio(resting, sum(counts.values()))
+
+
 def coverage_since_start(trajectory: Path, tracks: Path) -> float | None:
     """The share of the time from the first pose to the last tracks outside stretches without a pose."""
     poses = _stamps(trajectory, 0)

@@ -23,6 +23,7 @@ FULL: list[Step] = [
     ("scenes", ["--seeds", "1,2,3", *SCENES]),
     ("odometry", ["--seeds", TEN_SEEDS, *CONFIGURATIONS, *targets.ODOMETRY_SCENES]),
     ("ablation", ["--seeds", "1,2,3", *targets.ABLATION_SCENES]),
+    ("worlds", ["--seeds", "1001-1100"]),
     ("evaluation", []),
 ]
 QUICK: list[Step] = [
@@ -30,5 +31,6 @@ QUICK: list[Step] = [
     ("scenes", ["--seeds", QUICK_SEEDS, *QUICK_SCENES]),
     ("odometry", ["--seeds", QUICK_SEEDS, *CONFIGURATIONS, *QUICK_SCENES]),
     ("ablation", ["--seeds", QUICK_SEEDS, *QUICK_ABLATION_SCENES]),
+    ("worlds", ["--seeds", "1-4", "--duration", "5"]),
     ("evaluation", []),
 ]

@@ -34,6 +34,7 @@ class Section:
     columns: Sequence[Column]
     rows: Sequence[Row]
     note: str = ""
+    explained: Sequence[Column] = ()  # further quantities with their meanings
 
     def text(self) -> str:
         """The table in Markdown."""
@@ -42,7 +43,7 @@ class Section:
 
     def explanations(self) -> list[list[str]]:
         """Title and meaning of the columns that need one."""
-        return [[column.title, column.meaning] for column in self.columns if column.meaning]
+        return [[column.title, column.meaning] for column in [*self.columns, *self.explained] if column.meaning]
 
 
 @dataclass

@@ -152,7 +152,7 @@ def main(words: list[str]) -> int:
                          help="delete each sequence after use: 5 to 20 MB for a second of it")
     add_common(options, "out/bench_scenes")
     arguments = options.parse_intermixed_args(words)
-    every = sorted(str(path) for path in (CONFIGS / "scenes").glob("*.yaml"))
+    every = sorted(str(path) for path in (CONFIGS / "scenes").glob("*.yaml") if path.stem != "random")
     bench = bench_of(arguments, "scenes", words, every)
     simulator = bench.simulator(tuple(arguments.simulate_set), drive_seconds=arguments.duration[0])
     sequences = [simulator.sequence(scene, seed) for scene in bench.scenes for seed in bench.seeds]

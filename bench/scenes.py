@@ -15,7 +15,8 @@ from bench.program import CONFIGS, Program
 from bench.runner import KEY_FILE, Job
 
 SIMULATED_BY = "simulated_by.json"
-KEPT_WHEN_DELETED = ("manifest.json", KEY_FILE, SIMULATED_BY)
+DRAWN_SCENE = "scene.yaml"  # of a random scene
+KEPT_WHEN_DELETED = ("manifest.json", DRAWN_SCENE, KEY_FILE, SIMULATED_BY)
 DRIVE_SECONDS = "8"  # of a drive without [FROM+]SECONDS
 _PART = re.compile(r"(?:([0-9.]+)\+)?([0-9.]+)")
 

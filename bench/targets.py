@@ -12,6 +12,9 @@ BUMPS_AT = "motion.vehicle.bumps_at_s"
 MOTION_KIND = "motion.kind"
 RPE_PAIRS_FROM = "evaluation.rpe_pairs_from"
 
+CAMERA_HEIGHT = "odometry.ground.camera_height_m"  # of the odometry
+TRUE_CAMERA_HEIGHT = "motion.vehicle.camera_height_m"  # of the scene
+
 # A drive of few events, 10 minutes of which need little disk.
 SLOW_DRIVE = [
     "scene.calibration=davis240c",
@@ -148,6 +151,22 @@ PUBLISHED_ODOMETRY = {
     "max_planar_percent": 0.558,
 }
 PUBLISHED_COMPARES_WITH = "driving_day:60"
+
+
+# Of random drives, over all of them.
+WORLD_TARGETS = [
+    Target("random", "mean_planar_percent", "<=", 0.08),
+    Target("random", "mean_planar_percent", "<=", 0.25, of="90 %"),
+    Target("random", "mean_planar_percent", "<=", 1.0, of="worst"),
+    Target("random", "lost", "<=", 0, of="sum"),
+    Target("random", "kitti_translation_percent", "<=", 0.3),
+    Target("random", "kitti_rotation_deg_per_m", "<=", 0.001),
+    Target("random", "metric_scale_error_percent", "<=", 0.5),
+    Target("random", "metric_scale_error_percent", "<=", 1.5, of="worst"),
+    Target("random", "nees_pose", ">=", 0.7),
+    Target("random", "nees_pose", "<=", 1.4),
+    Target("random", "nees_pose", "<=", 4, of="90 %"),
+]
 
 
 def verdict(value: float | None, comparison: str, limit: float) -> str:

@@ -16,6 +16,7 @@ void Register(Parameters& p, StreetOptions& o) {
   p.Add("street.pavement_width_m", &o.pavement_width_m, 1.0, 10.0, "width of the pavement on each side (m)");
   p.Add("street.house_share", &o.house_share, 0.0, 1.0, "ratio of the road's length lined with houses");
   p.Add("street.trees_per_100_m", &o.trees_per_100_m, 0.0, 40.0, "trees on both sides together");
+  p.Add("street.canopy", &o.canopy, 0.0, 1.0, "ratio of the trees whose crowns hang over the road");
   p.Add("street.poles_per_100_m", &o.poles_per_100_m, 0.0, 40.0, "street lamps, some with traffic signs");
   p.Add("street.parked_cars_per_100_m", &o.parked_cars_per_100_m, 0.0, 36.0,
         "parked cars on both sides together; a parking strip narrower than a car has none");
@@ -23,7 +24,22 @@ void Register(Parameters& p, StreetOptions& o) {
   p.Add("street.oncoming_car_speed_m_s", &o.oncoming_car_speed_m_s, 0.0, 40.0, "speed of the oncoming cars (m/s)");
   p.Add("street.cars_ahead", &o.cars_ahead, 0, 20,
         "cars ahead in the camera's lane that drive as it does; motion.kind vehicle only");
-  p.Add("street.light", &o.light, {"day", "night"}, "night: street lamps, head lamps and lit windows");
+  p.Add("street.lorry", &o.lorry,
+        "a lorry that drives in the other lane, slowly past the camera; motion.kind vehicle only");
+  p.Add("street.pedestrians_per_100_m", &o.pedestrians_per_100_m, 0.0, 20.0, "pedestrians on both pavements together");
+  p.Add("street.crossing_pedestrians_per_100_m", &o.crossing_pedestrians_per_100_m, 0.0, 20.0,
+        "pedestrians that cross ahead of the camera; motion.kind vehicle only");
+  p.Add("street.left_hand_traffic", &o.left_hand_traffic, "the camera drives in the left lane");
+  p.Add("street.camera_lateral_m", &o.camera_lateral_m, -2.0, 2.0,
+        "offset of the camera from the centre of its lane, positive: to the right (m)");
+  p.Add("street.road_contrast", &o.road_contrast, 0.0, 1.0,
+        "contrast of asphalt, pavements and ground over that of worn ones; markings and kerbs keep theirs");
+  p.Add("street.facade_contrast", &o.facade_contrast, 0.0, 1.0,
+        "contrast of the facades over that of richly detailed ones");
+  p.Add("street.wetness", &o.wetness, 0.0, 1.0,
+        "how much the road mirrors the lamps, windows and the sky, as a ratio of what a wet one does");
+  p.Add("street.light", &o.light, {"day", "dusk", "night"}, "dusk and night: street lamps, head lamps and lit windows");
+  p.Add("street.dusk_ambient", &o.dusk_ambient, 0.0, 1.0, "ambient light at dusk over that of the day");
   p.Add("street.night_ambient", &o.night_ambient, 0.0, 1.0, "ambient light at night over that of the day");
   p.Add("street.head_lamps", &o.head_lamps, 0.0, 1000.0,
         "radiance of a white surface 1 m ahead of the camera at night");
@@ -46,6 +62,13 @@ void Register(Parameters& p, VehicleOptions& o) {
       "speed in right-angle turns; wider bends have the same lateral acceleration (m/s)");
   add("camera_height_m", &o.camera_height_m, 0.2, 5.0, "height of the camera above the road (m)");
   add("camera_pitch_deg", &o.camera_pitch_deg, -45.0, 45.0, "pitch of the camera, positive: looks down (degrees)");
+  add("camera_yaw_deg", &o.camera_yaw_deg, -45.0, 45.0, "yaw of the camera, positive: looks to the right (degrees)");
+  add("camera_roll_deg", &o.camera_roll_deg, -45.0, 45.0, "roll of the camera, positive: clockwise (degrees)");
+  add("bonnet_deg", &o.bonnet_deg, 0.0, 45.0,
+      "angle below the horizon at which the car's bonnet, which mirrors the scene, begins (degrees); 0: out of sight");
+  add("bonnet_reflectivity", &o.bonnet_reflectivity, 0.0, 1.0,
+      "reflectivity of the bonnet's clear coat at normal incidence; it grows to 1 at grazing angles");
+  add("bonnet_paint", &o.bonnet_paint, 0.0, 1.0, "reflectance of the bonnet's paint");
   add("vibration_deg", &o.vibration_deg, 0.0, 5.0, "standard deviation of the vibration about each axis (degrees)");
   add("vibration_hz", &o.vibration_hz, 0.1, 100.0, "mean frequency of the vibration (Hz)");
   p.Add(
@@ -87,10 +110,26 @@ void Register(Parameters& p, SensorOptions& o) {
         "rate of shot noise events of a dark pixel; a pixel of radiance 1 has a quarter (Hz)");
   p.Add("sensor.hot_pixels", &o.hot_pixels, 0.0, 1.0, "ratio of hot pixels, which fire by themselves");
   p.Add("sensor.hot_rate_hz", &o.hot_rate_hz, 0.0, 1e5, "mean event rate of a hot pixel (Hz)");
+  p.Add("sensor.hot_noisy", &o.hot_noisy, 0.0, 1.0,
+        "ratio of the hot pixels that fire at random with both polarities; the others fire steadily, positive");
+  p.Add("sensor.hot_intermittent", &o.hot_intermittent, 0.0, 1.0,
+        "ratio of the hot pixels that come and go, for 1.5 s each on average");
   p.Add("sensor.dead_pixels", &o.dead_pixels, 0.0, 1.0, "ratio of pixels that never fire");
   p.Add("sensor.dark_radiance", &o.dark_radiance, 1e-6, 10.0, "dark current, as a radiance added to the scene's");
   p.Add("sensor.readout_row_s", &o.readout_row_s, 0.0, 0.1,
         "period of a row's readout, which stamps its events (s); 0: events are stamped at once");
+}
+
+void Register(Parameters& p, CameraOptions& o) {
+  p.Add("camera.width_px", &o.width_px, 16, 2000, "width of the sensor (px)");
+  p.Add("camera.height_px", &o.height_px, 16, 2000, "height of the sensor (px)");
+  p.Add("camera.focal_px", &o.focal_px, 10.0, 5000.0, "focal length (px)");
+  p.Add("camera.centre_x_px", &o.centre_x_px, -500.0, 500.0,
+        "principal point from the middle of the sensor, positive: to the right (px)");
+  p.Add("camera.centre_y_px", &o.centre_y_px, -500.0, 500.0, "the same, positive: downwards (px)");
+  p.Add("camera.distortion", &o.distortion, {"radtan", "equidistant"}, "lens model");
+  p.Add("camera.k1", &o.k1, -1.0, 1.0, "first coefficient of the lens model");
+  p.Add("camera.k2", &o.k2, -1.0, 1.0, "second coefficient of the lens model");
 }
 
 void Register(Parameters& p, SimulationOptions& o) {
@@ -116,8 +155,8 @@ void Register(Parameters& p, SceneOptions& o) {
   p.Add("motion.kind", &o.motion, {"vehicle", "handheld", "slider", "file"}, "motion of the camera");
   p.Add("motion.file", &o.motion_file, any, "path",
         "trajectory for kind: file (TUM text); a cubic spline passes through its poses");
-  p.Add("scene.calibration", &o.calibration, not_empty, "davis346, davis240c or the path of a calibration",
-        "calibration of the camera");
+  p.Add("scene.calibration", &o.calibration, not_empty, "davis346, davis240c, camera or the path of a calibration",
+        "calibration of the camera; camera: as camera.* says");
   p.Add("road.shape", &o.road_shape, {"straight", "curved", "turns"}, "turns: right-angle turns at junctions");
   p.Add("road.length_m", &o.road_length_m, 0.0, 1e5, "length of the road (m); 0: as the motion needs");
   p.Add("road.slope", &o.road_slope, 0.0, 0.3, "maximum slope of the hills (rise over run)");
@@ -125,6 +164,7 @@ void Register(Parameters& p, SceneOptions& o) {
   Register(p, o.vehicle);
   Register(p, o.handheld);
   Register(p, o.slider);
+  Register(p, o.camera);
   Register(p, o.sensor);
   Register(p, o.simulation);
 }

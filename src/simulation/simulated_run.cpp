@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "evo/core/error.hpp"
@@ -22,7 +24,23 @@ namespace {
 constexpr double kViewDistance = 250.0;  // m of road past the end: the camera never sees the street end
 constexpr double kMaxPixels = 4e6;       // four times the largest event camera, at some 150 bytes a pixel
 
-geometry::Calibration FindCalibration(const std::string& name) {
+/// The calibration that camera.* describes.
+geometry::Calibration MakeCalibration(const CameraOptions& options) {
+  geometry::Calibration calibration;
+  calibration.distortion =
+      options.distortion == "radtan" ? geometry::Distortion::kRadTan : geometry::Distortion::kEquidistant;
+  calibration.width = options.width_px;
+  calibration.height = options.height_px;
+  calibration.fx = calibration.fy = options.focal_px;
+  calibration.cx = 0.5 * (options.width_px - 1) + options.centre_x_px;
+  calibration.cy = 0.5 * (options.height_px - 1) + options.centre_y_px;
+  calibration.coefficients = {options.k1, options.k2, 0.0, 0.0, 0.0};
+  return calibration;
+}
+
+geometry::Calibration FindCalibration(const SceneOptions& options) {
+  const std::string& name = options.calibration;
+  if (name == "camera") return MakeCalibration(options.camera);
   if (name == "davis346") return geometry::MvsecDavis346();
   if (name == "davis240c") return geometry::UzhDavis240c();
   const geometry::Calibration calibration = io::ReadCalibration(name);
@@ -70,6 +88,13 @@ ReferenceLine MakeRoad(const SceneOptions& options, double distance_m) {
   return {options.road_shape, length, options.road_slope, Seed(options)};
 }
 
+std::optional<Bonnet> MakeBonnet(const VehicleOptions& options, const Lighting& lighting) {
+  if (options.bonnet_deg <= 0.0) return {};
+  constexpr double kRadPerDegree = std::numbers::pi / 180.0;
+  return Bonnet{std::tan(options.bonnet_deg * kRadPerDegree), options.bonnet_reflectivity,
+                options.bonnet_paint * lighting.ambient, MountRotation(options)};
+}
+
 SimulatedRun MakeDrive(const SceneOptions& options, const geometry::Camera& camera) {
   if (options.kind != "street") {
     throw Error(ErrorKind::kConfiguration,
@@ -79,6 +104,7 @@ SimulatedRun MakeDrive(const SceneOptions& options, const geometry::Camera& came
   const ReferenceLine road = MakeRoad(options, options.vehicle.duration_s * options.vehicle.speed_m_s);
   const VehicleMotion motion = MakeVehicleMotion(road, options.vehicle, Seed(options));
   Scene street = MakeStreet(road, options.street, options.vehicle.camera_height_m, Seed(options), motion.distance_m);
+  street.bonnet = MakeBonnet(options.vehicle, street.lighting);
   return {std::make_shared<const Scene>(std::move(street)), camera, motion.T_world_cam,
           FromSeconds(options.vehicle.duration_s)};
 }
@@ -92,7 +118,7 @@ Scene MakeWorld(const SceneOptions& options, double distance_m) {
 }  // namespace
 
 SimulatedRun MakeRun(const SceneOptions& options) {
-  const geometry::Camera camera(FindCalibration(options.calibration));
+  const geometry::Camera camera(FindCalibration(options));
   if (options.motion == "vehicle") return MakeDrive(options, camera);
   const FreeMotion motion = MakeFreeMotion(options);
   return {std::make_shared<const Scene>(MakeWorld(options, motion.distance_m)), camera, motion.T_world_cam,

@@ -67,6 +67,17 @@ TEST_F(SimulateCommandTest, RectifiedMapsFitAnIdealLens) {
   EXPECT_GT(longest, 1.0);
 }
 
+TEST_F(SimulateCommandTest, ADrawnSceneLiesBesideItsSequenceAndSimulatesTheSame) {
+  ASSERT_EQ(Run(Small("random", "a") + "--seed 3 --duration 0.05 -q"), 0) << err;
+  EXPECT_EQ(ReadFile(folder / "a" / "scene.yaml").rfind("# Drawn from random.yaml by seed 3\n# drawn: sensor=", 0), 0u);
+  ASSERT_EQ(Run("simulate " + Quote(folder / "a" / "scene.yaml") + " --duration 0.05 -q --out " + Quote(folder / "b")),
+            0)
+      << err;
+  EXPECT_EQ(io::Sha256(folder / "a" / "random_data.hdf5"), io::Sha256(folder / "b" / "scene_data.hdf5"));
+  EXPECT_EQ(io::Sha256(folder / "a" / "random_gt.hdf5"), io::Sha256(folder / "b" / "scene_gt.hdf5"));
+  EXPECT_FALSE(fs::exists(folder / "b" / "scene.yaml")) << "nothing was drawn";
+}
+
 TEST_F(SimulateCommandTest, UzhSequencesHaveTheFilesOfUzh) {
   ASSERT_EQ(Run(Small("slider", "u") + "--format uzh --duration 0.12 --preview-every 0.1"), 0) << err;
   for (const char* name : {"events.txt", "groundtruth.txt", "calib.txt", "images.txt", "images/frame_00000002.png",

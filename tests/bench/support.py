@@ -32,7 +32,7 @@ if "--print" in words:
     if command == "config":
         sys.exit(0)
     print("scene:\\n  seed: %s  # of chance\\nmotion:\\n  kind: slider  # how\\n\\n  slider:\\n    duration_s: 0.3  # s\\n"
-          "  vehicle:\\n    bumps_at_s: 52,56  # s\\nsensor:\\n  threshold_on: 0.5\\n  threshold_off: 0.2\\n"
+          "  vehicle:\\n    bumps_at_s: 52,56  # s\\n    camera_height_m: 1.6  # m\\nsensor:\\n  threshold_on: 0.5\\n  threshold_off: 0.2\\n"
           "  threshold_spread: 0.03" % value("--seed"))
     sys.exit(0)
 if command in ("track", "run", "odometry") and os.environ.get("FAKE_EXIT", "0") != "0":

@@ -233,7 +233,8 @@ class WrongWords(BenchTest):
         self.assertFalse((self.folder / "out").exists())
 
     def test_help(self) -> None:
-        for name in ("tracking", "scaling", "scenes", "odometry", "ablation", "evaluation", "all", "docs", "compare"):
+        for name in ("tracking", "scaling", "scenes", "odometry", "ablation", "worlds", "evaluation", "all", "docs",
+                     "compare"):
             with self.assertRaises(SystemExit) as end:
                 self.bench(name, "--help")
             self.assertEqual(end.exception.code, 0)

@@ -124,6 +124,57 @@ TEST(SensorNoise, HotAndDeadPixelsHaveTheirRatios) {
   EXPECT_NEAR(kSize * kSize - static_cast<double>(ByPixel(show.events).size()), 200.0, 42.0) << "dead";
 }
 
+/// Hot pixels alone, for 20 s.
+SensorOptions HotPixels(double noisy, double intermittent) {
+  SensorOptions options = IdealSensor(0.3, 0.2);
+  options.hot_pixels = 0.1;
+  options.hot_rate_hz = 50.0;
+  options.hot_noisy = noisy;
+  options.hot_intermittent = intermittent;
+  return options;
+}
+
+TEST(SensorNoise, NoisyHotPixelsFireAtRandomWithBothPolarities) {
+  Show steady(40, 40, HotPixels(0.0, 0.0), 3), noisy(40, 40, HotPixels(1.0, 0.0), 3);
+  for (Show* show : {&steady, &noisy}) show->Run(0, 20'000 * kMs, 4 * kMs, [](int, int, double) { return 0.5F; });
+  EXPECT_EQ(CountOf(steady.events, -1), 0);
+  EXPECT_NEAR(static_cast<double>(CountOf(noisy.events, 1)) / static_cast<double>(noisy.events.size()), 0.5, 0.01);
+  const auto pixels = ByPixel(noisy.events);
+  for (const auto& [pixel, events] : ByPixel(steady.events)) {
+    const auto expected = static_cast<double>(events.t.size());
+    if (expected < 50.0) continue;
+    ASSERT_TRUE(pixels.contains(pixel)) << "the same pixels are hot";
+    EXPECT_NEAR(static_cast<double>(pixels.at(pixel).t.size()), expected, 5.0 * std::sqrt(expected));
+  }
+}
+
+TEST(SensorNoise, IntermittentHotPixelsComeAndGo) {
+  Show always(40, 40, HotPixels(0.5, 0.0), 3), sometimes(40, 40, HotPixels(0.5, 1.0), 3);
+  for (Show* show : {&always, &sometimes}) show->Run(0, 20'000 * kMs, 4 * kMs, [](int, int, double) { return 0.5F; });
+  const double ratio = static_cast<double>(sometimes.events.size()) / static_cast<double>(always.events.size());
+  EXPECT_NEAR(ratio, 0.5, 0.1) << "half of the time";
+  int with_gaps = 0;
+  int busy = 0;
+  for (const auto& [pixel, events] : ByPixel(sometimes.events)) {
+    if (events.t.size() < 400) continue;
+    ++busy;
+    TimeNs longest = 0;
+    for (std::size_t i = 1; i < events.t.size(); ++i) longest = std::max(longest, events.t[i] - events.t[i - 1]);
+    with_gaps += longest > 500 * kMs ? 1 : 0;
+  }
+  EXPECT_GT(busy, 30);
+  EXPECT_GT(with_gaps, busy * 8 / 10);
+}
+
+TEST(SensorNoise, HotPixelsDoNotDependOnTheTiles) {
+  const auto grey = [](int, int, double) { return 0.5F; };
+  Show whole(40, 24, HotPixels(0.5, 0.5), 3), tiles(40, 24, HotPixels(0.5, 0.5), 3, 7);
+  for (Show* show : {&whole, &tiles}) show->Run(0, 5'000 * kMs, 4 * kMs, grey);
+  const auto expected = ByPixel(whole.events), found = ByPixel(tiles.events);
+  ASSERT_EQ(expected.size(), found.size());
+  for (const auto& [pixel, events] : expected) EXPECT_EQ(found.at(pixel).t, events.t);
+}
+
 // A random texture, reflectance log-normal and with detail at all scales, drifts over the pixels.
 class Texture {
  public:

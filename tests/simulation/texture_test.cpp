@@ -73,6 +73,36 @@ TEST(Texture, HolesDoNotAffectTheirSurroundings) {
   EXPECT_NEAR(texture.Lookup(4.9, 7.2, 100.0).coverage, 0.5, 1e-6);
 }
 
+TEST(Texture, LessContrastKeepsTheMeanOnAllLevels) {
+  Random random(4);
+  std::vector<Texel> texels(16 * 16);
+  for (Texel& texel : texels) texel = {static_cast<float>(random.Uniform(0.1, 0.9)), random.Chance(0.8) ? 1.0F : 0.0F};
+  const Texture before(16, 16, texels);
+  Texture after = before;
+  after.ScaleContrast(0.25F);
+  const float mean = before.Lookup(0.0, 0.0, 100.0).reflectance;
+  for (const double footprint : {0.0, 1.7, 3.0, 100.0}) {
+    for (int i = 0; i < 50; ++i) {
+      const double u = random.Uniform(0.0, 16.0);
+      const Texel a = before.Lookup(u, 2.0 * u, footprint), b = after.Lookup(u, 2.0 * u, footprint);
+      EXPECT_EQ(a.coverage, b.coverage);
+      if (a.coverage > 0.01F) {
+        EXPECT_NEAR(b.reflectance - mean, 0.25F * (a.reflectance - mean), 1e-4F);
+      }
+    }
+  }
+}
+
+TEST(Texture, LessCoverageKeepsTheReflectance) {
+  const Texture solid(1, 1, {{.reflectance = 0.4F}});
+  Texture sheer = solid;
+  sheer.ScaleCoverage(0.7F);
+  EXPECT_TRUE(solid.solid());
+  EXPECT_FALSE(sheer.solid());
+  EXPECT_NEAR(sheer.Lookup(0.3, 0.3, 0.0).coverage, 0.7, 1e-6);
+  EXPECT_NEAR(sheer.Lookup(0.3, 0.3, 0.0).reflectance, 0.4, 1e-6);
+}
+
 TEST(Texture, RejectsSizesThatAreNoPowersOfTwo) {
   EXPECT_THROW(Texture(3, 4, std::vector<Texel>(12)), Error);
   EXPECT_THROW(Texture(4, 4, std::vector<Texel>(15)), Error);

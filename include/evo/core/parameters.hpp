@@ -33,6 +33,8 @@ class Parameters {
   void LoadText(const std::string& yaml, const std::string& source);
   /// One setting "name=value", as given by --set.
   void Set(std::string_view setting);
+  /// `where` names the place of the setting in messages, for example "run.yaml:3".
+  void Set(const std::string& name, const std::string& text, const std::string& where) { Assign(name, text, where); }
 
   /// All parameters with their present values as a YAML file that LoadFile accepts; comments give help and range.
   std::string ToYaml() const;

@@ -17,12 +17,22 @@ struct StreetOptions {
   double pavement_width_m = 2.0;
   double house_share = 0.85;
   double trees_per_100_m = 6.0;
+  double canopy = 0.0;
   double poles_per_100_m = 4.0;
   double parked_cars_per_100_m = 6.0;
   double oncoming_cars_per_100_m = 0.5;
   double oncoming_car_speed_m_s = 9.0;
   int cars_ahead = 0;
+  bool lorry = false;
+  double pedestrians_per_100_m = 0.0;
+  double crossing_pedestrians_per_100_m = 0.0;
+  bool left_hand_traffic = false;
+  double camera_lateral_m = 0.0;
+  double road_contrast = 1.0;
+  double facade_contrast = 1.0;
+  double wetness = 0.0;
   std::string light = "day";
+  double dusk_ambient = 0.15;
   double night_ambient = 0.02;
   double head_lamps = 12.0;
   double lamp_flicker_hz = 120.0;
@@ -41,6 +51,12 @@ struct VehicleOptions {
   // Mount of the camera.
   double camera_height_m = 1.5;
   double camera_pitch_deg = 0.0;
+  double camera_yaw_deg = 0.0;
+  double camera_roll_deg = 0.0;
+  // Bonnet.
+  double bonnet_deg = 0.0;
+  double bonnet_reflectivity = 0.05;
+  double bonnet_paint = 0.1;
   // Vibration.
   double vibration_deg = 0.05;
   double vibration_hz = 12.0;
@@ -82,9 +98,23 @@ struct SensorOptions {
   double shot_noise_hz = 0.5;
   double hot_pixels = 0.0002;
   double hot_rate_hz = 100.0;
+  double hot_noisy = 0.0;
+  double hot_intermittent = 0.0;
   double dead_pixels = 0.0002;
   // Readout.
   double readout_row_s = 0.0;
+};
+
+/// Names camera.*. They hold for scene.calibration: camera.
+struct CameraOptions {
+  int width_px = 346;
+  int height_px = 260;
+  double focal_px = 224.0;
+  double centre_x_px = 0.0;
+  double centre_y_px = 0.0;
+  std::string distortion = "equidistant";
+  double k1 = 0.0;
+  double k2 = 0.0;
 };
 
 /// Names simulation.*.
@@ -114,6 +144,7 @@ struct SceneOptions {
   VehicleOptions vehicle;
   HandheldOptions handheld;
   SliderOptions slider;
+  CameraOptions camera;
   SensorOptions sensor;
   SimulationOptions simulation;
 };

@@ -17,8 +17,11 @@
 #include "app/simulation/scene_config.hpp"
 #include "app/simulation/sequence_output.hpp"
 #include "evo/core/error.hpp"
+#include "evo/core/logging.hpp"
+#include "evo/core/output_file.hpp"
 #include "evo/core/parallel.hpp"
 #include "evo/core/progress.hpp"
+#include "evo/simulation/random_scene.hpp"
 #include "evo/simulation/simulate.hpp"
 #include "evo/simulation/simulated_run.hpp"
 
@@ -138,12 +141,39 @@ simulation::SimulationCounts Simulate(const SimulateArguments& arguments, const 
   return simulation::Simulate(run, scene, pool, sink, &progress);
 }
 
+/// Sets the parameters from the scene file and the settings. Returns what was drawn of a random scene.
+std::optional<simulation::DrawnNames> LoadScene(const SimulateArguments& arguments, SceneConfig* config) {
+  CommonOptions settings = arguments.common;
+  SetUpLogging(settings.quiet ? -1 : settings.verbose);
+  std::optional<simulation::DrawnNames> drawn;
+  if (!settings.config_file.empty()) {
+    drawn = simulation::LoadScene(settings.config_file, arguments.seed, &config->scene, &config->parameters);
+  }
+  settings.config_file.clear();
+  settings.Apply(&config->parameters);
+  if (arguments.seed) config->scene.seed = *arguments.seed;
+  return drawn;
+}
+
+/// The scene as a file that simulates the same again.
+std::string FormatScene(const SimulateArguments& arguments, const SceneConfig& config,
+                        const std::optional<simulation::DrawnNames>& drawn) {
+  std::string text;
+  if (drawn) {
+    text =
+        fmt::format("# Drawn from {} by seed {}\n# drawn:", fs::path(arguments.common.config_file).filename().string(),
+                    config.scene.seed);
+    for (const auto& [name, alternative] : *drawn) text += fmt::format(" {}={}", name, alternative);
+    text += '\n';
+  }
+  return text + config.parameters.ToYaml();
+}
+
 void RunSimulate(const SimulateArguments& arguments, const std::vector<std::string>& command_line) {
   SceneConfig config;
-  arguments.common.Apply(&config.parameters);
-  if (arguments.seed) config.scene.seed = *arguments.seed;
+  const auto drawn = LoadScene(arguments, &config);
   if (arguments.print) {
-    std::cout << config.parameters.ToYaml();
+    std::cout << FormatScene(arguments, config, drawn);
     return;
   }
   const SequenceOrder order = CheckOrder(arguments, config);
@@ -163,6 +193,7 @@ void RunSimulate(const SimulateArguments& arguments, const std::vector<std::stri
   });
   output->Commit();
   AddCounts(counts, &record);
+  if (drawn) WriteText(staged.path() / "scene.yaml", FormatScene(arguments, config, drawn));
   report::WriteManifest(staged.path() / "manifest.json", record.manifest);
   if (arguments.common.force) RemoveSequence(arguments.out, order.format, order.name);
   staged.Commit();

@@ -137,9 +137,10 @@ void Register(Parameters& p, SequenceOptions& o) {
 
 std::vector<std::string> SequenceResultNames(SequenceFormat format, const std::string& name) {
   if (format == SequenceFormat::kUzh) {
-    return {"events.txt", "groundtruth.txt", "calib.txt", "images.txt", "images", "depth_gt.hdf5", "preview"};
+    return {"events.txt", "groundtruth.txt", "calib.txt", "images.txt",
+            "images",     "depth_gt.hdf5",   "preview",   "scene.yaml"};
   }
-  return {name + "_data.hdf5", name + "_gt.hdf5", "camchain-imucam-" + name + ".yaml", "preview"};
+  return {name + "_data.hdf5", name + "_gt.hdf5", "camchain-imucam-" + name + ".yaml", "preview", "scene.yaml"};
 }
 
 std::unique_ptr<SequenceOutput> MakeSequenceOutput(SequenceFormat format, const SequencePlace& place,

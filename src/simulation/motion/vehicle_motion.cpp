@@ -58,7 +58,7 @@ class Vehicle {
       const double side = random.Chance(0.5) ? 1.0 : -1.0;
       bumps_.push_back({time, std::min(1.0, speeds_.SpeedAt(time) / kFullBumpSpeed) / peak, side});
     }
-    R_vehicle_cam_ = geometry::so3::Exp({-options.camera_pitch_deg * kRadPerDegree, 0.0, 0.0});
+    R_vehicle_cam_ = MountRotation(options);
   }
 
   double DistanceAt(double t) const { return speeds_.DistanceAt(t); }
@@ -110,6 +110,12 @@ void CheckOptions(const VehicleOptions& options) {
 }
 
 }  // namespace
+
+Eigen::Quaterniond MountRotation(const VehicleOptions& options) {
+  return geometry::so3::Exp({0.0, options.camera_yaw_deg * kRadPerDegree, 0.0}) *
+         geometry::so3::Exp({-options.camera_pitch_deg * kRadPerDegree, 0.0, 0.0}) *
+         geometry::so3::Exp({0.0, 0.0, options.camera_roll_deg * kRadPerDegree});
+}
 
 VehicleMotion MakeVehicleMotion(const ReferenceLine& road, const VehicleOptions& options, std::uint64_t seed) {
   CheckOptions(options);

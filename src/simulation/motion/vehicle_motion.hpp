@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <functional>
 
@@ -16,8 +17,11 @@ struct VehicleMotion {
   std::function<double(TimeNs)> distance_m;
 };
 
+/// The rotation of the camera's mount.
+Eigen::Quaterniond MountRotation(const VehicleOptions& options);
+
 /// Drives a camera along a road. The camera follows the road's heading and slope; bumps act on it only while it moves.
-/// At time 0 its pose is the identity but for camera_pitch_deg: a point of the road lies in the world at
+/// At time 0 its pose is the identity but for the angles of its mount: a point of the road lies in the world at
 /// ReferenceLine::Point::position plus camera_height_m in y. The vehicle stops at the road's end. It keeps its velocity
 /// before 0 and after duration_s. Error (kConfiguration) for an option out of range.
 VehicleMotion MakeVehicleMotion(const ReferenceLine& road, const VehicleOptions& options, std::uint64_t seed);

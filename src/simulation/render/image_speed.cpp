@@ -60,7 +60,8 @@ Vector2d Renderer::CentreRay(int x, int y) const {
 
 Eigen::Matrix2d Renderer::J_pixel_normalized(int x, int y) const {
   constexpr double kStep = 1e-3;  // central differences; about a third of a pixel
-  const Vector2d ray = CentreRay(x, y);
+  // That of the lens, also where the bonnet, which is convex, mirrors the ray.
+  const Vector2d ray = scene_.bonnet ? camera_.Undistort({x, y}).value_or(CentreRay(x, y)) : CentreRay(x, y);
   Eigen::Matrix2d jacobian;
   for (int c = 0; c < 2; ++c) {
     const Vector2d step = kStep * Vector2d::Unit(c);

@@ -9,6 +9,7 @@
 
 #include "evo/core/error.hpp"
 #include "simulation/fast_math.hpp"
+#include "simulation/render/bonnet_mirror.hpp"
 #include "simulation/render/lights.hpp"
 #include "simulation/render/projected_surface.hpp"
 #include "simulation/render/ray_packet.hpp"
@@ -91,12 +92,6 @@ void ShadeRays(const std::vector<ProjectedSurface>& surfaces, const Lights& ligh
   });
 }
 
-float Mean(const float* rays, int count) {
-  float sum = 0.0F;
-  for (int k = 0; k < count; ++k) sum += rays[k];
-  return sum / static_cast<float>(count);
-}
-
 }  // namespace
 
 Renderer::Renderer(const Scene& scene, const geometry::Camera& camera, int samples)
@@ -109,6 +104,7 @@ Renderer::Renderer(const Scene& scene, const geometry::Camera& camera, int sampl
   }
   centres_ = CastRays(1);
   samples_ = samples == 1 ? centres_ : CastRays(samples);
+  max_spacing_ = std::exp2(*std::max_element(centres_.log2_spacing.begin(), centres_.log2_spacing.end()));
 }
 
 Renderer::Rays Renderer::CastRays(int samples) {
@@ -126,8 +122,7 @@ Renderer::Rays Renderer::CastRays(int samples) {
         const auto found = camera_.Undistort(centre + offset - Vector2d(0.5, 0.5));
         if (found) ray = *found;
         if (!found) has_no_ray_[p] = 1;
-        rays.x.push_back(static_cast<float>(ray.x()));
-        rays.y.push_back(static_cast<float>(ray.y()));
+        AddRay(ray, &rays);
       }
     }
     // A pixel's area on the plane z = 1 is 1 / det of the lens model's Jacobian, by forward differences.
@@ -142,12 +137,23 @@ Renderer::Rays Renderer::CastRays(int samples) {
   return rays;
 }
 
+/// Adds a ray, or its mirror image where it meets the bonnet.
+void Renderer::AddRay(const Vector2d& ray, Rays* rays) const {
+  Vector2d seen = ray;
+  if (scene_.bonnet) {
+    const auto reflection = BonnetMirror(*scene_.bonnet).Reflect(ray);
+    if (reflection) seen = reflection->ray;
+    rays->reflectivity.push_back(reflection ? static_cast<float>(reflection->reflectivity) : 0.0F);
+  }
+  rays->x.push_back(static_cast<float>(seen.x()));
+  rays->y.push_back(static_cast<float>(seen.y()));
+}
+
 Renderer::VisibleSet Renderer::FindVisible(const Tile& tile, TimeNs from, TimeNs to,
                                            const geometry::SE3& T_world_cam_from,
                                            const geometry::SE3& T_world_cam_to) const {
   RayFrustum rays = TileFrustum(tile);
-  const float pixel = std::exp2(*std::max_element(centres_.log2_spacing.begin(), centres_.log2_spacing.end()));
-  rays = {rays.x0 - pixel, rays.x1 + pixel, rays.y0 - pixel, rays.y1 + pixel};
+  rays = {rays.x0 - max_spacing_, rays.x1 + max_spacing_, rays.y0 - max_spacing_, rays.y1 + max_spacing_};
   return {hierarchy_.Find(rays, from, to, T_world_cam_from, T_world_cam_to)};
 }
 
@@ -184,11 +190,22 @@ void Renderer::GatherRays(const Rays& rays, const Tile& part, RayPacket* packet)
   std::fill_n(packet->transmittance.begin(), n, 1.0F);
 }
 
+float Renderer::PixelRadiance(int pixel, const float* radiance, float bonnet_radiance) const {
+  const int count = samples_.per_pixel;
+  float sum = 0.0F;
+  for (int k = 0; k < count; ++k) {
+    const float reflectivity = samples_.reflectivity.empty() ? 0.0F : samples_.reflectivity[pixel * count + k];
+    sum += reflectivity > 0.0F ? reflectivity * radiance[k] + bonnet_radiance : radiance[k];
+  }
+  return sum / static_cast<float>(count);
+}
+
 void Renderer::Render(const Tile& tile, const VisibleSet& visible, TimeNs t, const geometry::SE3& T_world_cam,
                       Radiance* radiance) const {
   const auto surfaces = SurfaceProjector(scene_, t, T_world_cam).ProjectAll(visible.surfaces, TileFrustum(tile));
   const Lights lights(scene_.lighting, T_world_cam);
   const int n = samples_.per_pixel;
+  const float bonnet = scene_.bonnet ? static_cast<float>(scene_.bonnet->radiance) : 0.0F;
   radiance->steady.assign(tile.pixels(), 0.0F);
   radiance->lamps.assign(tile.pixels(), 0.0F);
   radiance->has_lamps = false;
@@ -201,10 +218,13 @@ void Renderer::Render(const Tile& tile, const VisibleSet& visible, TimeNs t, con
     for (int p = 0; p < part.width * part.height; ++p) {
       const int x = part.x0 + p % part.width;
       const int y = part.y0 + p / part.width;
-      if (has_no_ray_[y * camera_.width() + x] != 0) continue;
+      const int pixel = y * camera_.width() + x;
+      if (has_no_ray_[pixel] != 0) continue;
       const int position = (y - tile.y0) * tile.width + x - tile.x0;
-      radiance->steady[position] = Mean(&packet_radiance.steady[p * n], n);
-      if (packet_radiance.has_lamps) radiance->lamps[position] = Mean(&packet_radiance.lamps[p * n], n);
+      radiance->steady[position] = PixelRadiance(pixel, &packet_radiance.steady[p * n], bonnet);
+      if (packet_radiance.has_lamps) {
+        radiance->lamps[position] = PixelRadiance(pixel, &packet_radiance.lamps[p * n], 0.0F);
+      }
     }
   });
 }
@@ -229,7 +249,8 @@ void Renderer::RenderDepth(const Tile& tile, const VisibleSet& visible, TimeNs t
       if (LookUpTexture(*candidates[index], packet, i, z).coverage < 0.5F) return 1.0F;
       const int x = part.x0 + packet.ray[i] % part.width;
       const int y = part.y0 + packet.ray[i] / part.width;
-      if (has_no_ray_[y * camera_.width() + x] != 0) return 0.0F;
+      const int pixel = y * camera_.width() + x;
+      if (has_no_ray_[pixel] != 0 || (scene_.bonnet && centres_.reflectivity[pixel] > 0.0F)) return 0.0F;
       depth[position(packet.ray[i])] = z;
       moving[position(packet.ray[i])] = candidates[index]->moving ? 1 : 0;
       return 0.0F;

@@ -67,9 +67,13 @@ class Renderer {
     std::vector<float> x;
     std::vector<float> y;
     std::vector<float> log2_spacing;  ///< per pixel: log2 of the distance of two rays on the plane z = 1
+    std::vector<float> reflectivity;  ///< of the bonnet that mirrors a ray, 0: none does; empty: there is no bonnet
   };
 
   Rays CastRays(int samples);
+  void AddRay(const Eigen::Vector2d& ray, Rays* rays) const;
+  /// The mean of a pixel's rays, given the radiance that each would see without the bonnet.
+  float PixelRadiance(int pixel, const float* radiance, float bonnet_radiance) const;
   RayFrustum TileFrustum(const Tile& tile) const;
   void GatherRays(const Rays& rays, const Tile& part, RayPacket* packet) const;
   Eigen::Vector2d CentreRay(int x, int y) const;
@@ -81,6 +85,7 @@ class Renderer {
   std::vector<std::uint8_t> has_no_ray_;  ///< per pixel: the lens model has no ray for part of it
   Rays samples_;
   Rays centres_;
+  float max_spacing_ = 0.0F;  ///< of two neighbouring pixels on the plane z = 1
 };
 
 }  // namespace evo::simulation

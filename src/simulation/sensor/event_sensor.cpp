@@ -15,9 +15,11 @@ namespace evo::simulation {
 
 namespace {
 
-constexpr double kMinThreshold = 0.01;  // v2e's limit: a pixel below it fires at every change
-constexpr float kBrightNoise = 0.25F;   // shot noise rate at radiance 1 over that in the dark, as in v2e
-constexpr float kMaxRadiance = 1e30F;   // FastLog still holds after dark_radiance is added
+constexpr double kMinThreshold = 0.01;          // v2e's limit: a pixel below it fires at every change
+constexpr double kMeanSwitchTime = 1.5;         // s between two switches of a pixel that comes and goes
+constexpr std::uint64_t kHotStream = 0x686F74;  // "hot"
+constexpr float kBrightNoise = 0.25F;           // shot noise rate at radiance 1 over that in the dark, as in v2e
+constexpr float kMaxRadiance = 1e30F;           // FastLog still holds after dark_radiance is added
 constexpr TimeNs kNotStarted = std::numeric_limits<TimeNs>::min();
 constexpr TimeNs kMicrosecond = 1000;
 constexpr float kRefractory = std::numeric_limits<float>::quiet_NaN();  // amplifier_ during the refractory period
@@ -52,17 +54,21 @@ EventSensor::EventSensor(int width, int height, const SensorOptions& options, st
   time_.assign(pixels, kNotStarted);
   refractory_until_.assign(pixels, 0);
   for (auto* column : {&radiance_, &log_radiance_, &photoreceptor_, &amplifier_, &threshold_on_, &threshold_off_,
-                       &leak_, &noise_budget_}) {
+                       &leak_, &hot_noise_, &noise_budget_}) {
     column->assign(pixels, 0.0F);
   }
   random_.reserve(pixels);
-  for (std::size_t pixel = 0; pixel < pixels; ++pixel) InitializePixel(pixel, options, Random(seed, pixel));
+  for (std::size_t pixel = 0; pixel < pixels; ++pixel) InitializePixel(pixel, options, seed);
   for (std::size_t row = 0; row < height_; ++row) {
+    const auto at_row = std::ranges::lower_bound(intermittent_, row * width_, {}, &IntermittentPixel::pixel);
+    row_intermittent_.push_back(static_cast<std::size_t>(at_row - intermittent_.begin()));
     row_phase_.push_back(static_cast<TimeNs>(Random(seed, pixels + row).Uniform() * static_cast<double>(row_period_)));
   }
+  row_intermittent_.push_back(intermittent_.size());
 }
 
-void EventSensor::InitializePixel(std::size_t pixel, const SensorOptions& options, Random random) {
+void EventSensor::InitializePixel(std::size_t pixel, const SensorOptions& options, std::uint64_t seed) {
+  Random random(seed, pixel);
   const auto threshold = [&](double mean) {
     return static_cast<float>(std::max(kMinThreshold, mean + options.threshold_spread * random.Normal()));
   };
@@ -74,7 +80,8 @@ void EventSensor::InitializePixel(std::size_t pixel, const SensorOptions& option
   const double phase = random.Uniform();
   // The leak current is the same in all pixels but the hot ones, which have a larger one.
   double leak = options.leak_hz * options.threshold_on;
-  if (hot) leak += hot_rate * static_cast<double>(on);
+  const double hot_leak = hot ? hot_rate * static_cast<double>(on) : 0.0;
+  leak += hot_leak;
   threshold_on_[pixel] = dead ? kNever : on;
   threshold_off_[pixel] = dead ? kNever : off;
   leak_[pixel] = static_cast<float>(dead ? 0.0 : leak);
@@ -82,6 +89,43 @@ void EventSensor::InitializePixel(std::size_t pixel, const SensorOptions& option
   amplifier_[pixel] = leak > 0.0 && !dead ? static_cast<float>(phase) * on : 0.0F;
   noise_budget_[pixel] = dead ? kNever : static_cast<float>(random.Exponential());
   random_.push_back(random);
+  if (hot && !dead && options.hot_noisy + options.hot_intermittent > 0.0) {
+    InitializeHotPixel(pixel, static_cast<float>(hot_leak), options, Random(seed ^ kHotStream, pixel));
+  }
+}
+
+/// Turns the leak of a hot pixel into noise, or makes it come and go, as drawn from `random`.
+void EventSensor::InitializeHotPixel(std::size_t pixel, float leak, const SensorOptions& options, Random random) {
+  const float usual_leak = std::max(0.0F, leak_[pixel] - leak);
+  if (random.Chance(options.hot_noisy)) {
+    leak_[pixel] = usual_leak;
+    hot_noise_[pixel] = leak / threshold_on_[pixel];
+  }
+  if (!random.Chance(options.hot_intermittent)) return;
+  const bool on = random.Chance(0.5);
+  intermittent_.push_back({pixel, usual_leak, leak_[pixel], hot_noise_[pixel], on, kNotSwitched, random});
+  if (on) return;
+  leak_[pixel] = usual_leak;
+  hot_noise_[pixel] = 0.0F;
+}
+
+/// Switches the pixels of `tile` that come and go on or off if it is time to at `t`.
+void EventSensor::SwitchIntermittentPixels(const Tile& tile, TimeNs t) {
+  for (std::size_t row = static_cast<std::size_t>(tile.y0); row < static_cast<std::size_t>(tile.y0 + tile.height);
+       ++row) {
+    for (std::size_t i = row_intermittent_[row]; i < row_intermittent_[row + 1]; ++i) {
+      IntermittentPixel& p = intermittent_[i];
+      const auto column = static_cast<int>(p.pixel % width_);
+      if (column < tile.x0 || column >= tile.x0 + tile.width) continue;
+      const auto draw_time = [&p] { return FromSeconds(kMeanSwitchTime * p.random.Exponential()); };
+      if (p.until == kNotSwitched) p.until = t + draw_time();
+      if (t < p.until) continue;
+      p.on = !p.on;
+      p.until += draw_time();
+      leak_[p.pixel] = p.on ? p.leak : p.usual_leak;
+      hot_noise_[p.pixel] = p.on ? p.noise_rate : 0.0F;
+    }
+  }
 }
 
 void EventSensor::CheckInput(const Tile& tile, std::span<const float> radiance) const {
@@ -111,6 +155,7 @@ void EventSensor::Advance(const Tile& tile, TimeNs t, std::span<const float> rad
     return;
   }
   if (t <= from) throw Error(ErrorKind::kInput, "the time of an event sensor's tile does not advance");
+  if (!intermittent_.empty()) SwitchIntermittentPixels(tile, from);
   const Step step{from, t, ToSeconds(t - from)};
   const auto tile_width = static_cast<std::size_t>(tile.width);
   const float* row_radiance = radiance.data();
@@ -146,6 +191,7 @@ std::int32_t EventSensor::PredictWithoutEvents(const float* radiance, float dura
   const float* on = &threshold_on_[run->first];
   const float* off = &threshold_off_[run->first];
   const float* leak = &leak_[run->first];
+  const float* hot_noise = &hot_noise_[run->first];
   PixelRun& __restrict to = *run;
   const std::size_t count = to.count;
   std::int32_t any = 0;
@@ -155,7 +201,7 @@ std::int32_t EventSensor::PredictWithoutEvents(const float* radiance, float dura
     const float mean_radiance = 0.5F * (radiance_from[k] + radiance[k]);
     const float input1 = FastLog(radiance[k] + dark_radiance_);
     to.cut_off[k] = Min(Max(cut_off_per_radiance_ * mean_radiance, min_cut_off_), max_cut_off_);
-    to.noise_rate[k] = shot_noise_hz_ * (1.0F - (1.0F - kBrightNoise) * Min(mean_radiance, 1.0F));
+    to.noise_rate[k] = shot_noise_hz_ * (1.0F - (1.0F - kBrightNoise) * Min(mean_radiance, 1.0F)) + hot_noise[k];
     const float time_constants = to.cut_off[k] * duration_s;
     const float response = FastOneMinusExp(time_constants);
     const float output1 =

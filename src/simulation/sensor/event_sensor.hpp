@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -20,6 +21,7 @@ namespace evo::simulation {
 //   photoreceptor   L = log(radiance + dark_radiance),  dy/dt = 2 pi f (L - y),
 //                   f = bandwidth_hz * radiance, within [dark_bandwidth_hz, bandwidth_hz]
 //   amplifier       v = y(t) - y(t_reset) + leak * (t - t_reset)
+//   hot pixels      leak more, or fire at random with both polarities, some for a while only
 //   comparators     +1 event at v = threshold_on, -1 event at v = -threshold_off; shot noise events come at random
 //   times
 //                   with random polarity. The pixel is reset at the end of the refractory period that follows an event:
@@ -63,7 +65,21 @@ class EventSensor {
     double duration_s = 0.0;
   };
 
-  void InitializePixel(std::size_t pixel, const SensorOptions& options, Random random);
+  /// A hot pixel that comes and goes: a random telegraph signal.
+  struct IntermittentPixel {
+    std::size_t pixel = 0;
+    float usual_leak = 0.0F;  ///< while it is off, 1/s
+    float leak = 0.0F;        ///< while it is on, 1/s
+    float noise_rate = 0.0F;  ///< likewise, 1/s
+    bool on = false;
+    TimeNs until = kNotSwitched;  ///< of the present state
+    Random random{0};
+  };
+  static constexpr TimeNs kNotSwitched = std::numeric_limits<TimeNs>::min();
+
+  void InitializePixel(std::size_t pixel, const SensorOptions& options, std::uint64_t seed);
+  void InitializeHotPixel(std::size_t pixel, float leak, const SensorOptions& options, Random random);
+  void SwitchIntermittentPixels(const Tile& tile, TimeNs t);
   void CheckInput(const Tile& tile, std::span<const float> radiance) const;
   void InitializeTile(const Tile& tile, std::span<const float> radiance);
   std::int32_t PredictWithoutEvents(const float* radiance, float duration_s, PixelRun* run) const;
@@ -92,8 +108,12 @@ class EventSensor {
   std::vector<float> threshold_on_;
   std::vector<float> threshold_off_;
   std::vector<float> leak_;          ///< 1/s
+  std::vector<float> hot_noise_;     ///< rate of the noise of hot pixels, 1/s
   std::vector<float> noise_budget_;  ///< integral of the noise rate up to the next shot noise event
   std::vector<Random> random_;
+
+  std::vector<IntermittentPixel> intermittent_;  ///< by pixel
+  std::vector<std::size_t> row_intermittent_;    ///< per row: the first of the row or a later one; and the end
 };
 
 }  // namespace evo::simulation

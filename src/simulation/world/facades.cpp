@@ -135,7 +135,9 @@ class FacadeRows {
 
 void AddFacades(const StreetContext& context) {
   Random paint(context.seed, kTextureStream);
-  HouseFactory factory(&context.builder, context.night, &paint);
+  context.builder.SetContrast(context.options.facade_contrast);
+  HouseFactory factory(&context.builder, context.night, context.options.wetness > 0.0, &paint);
+  context.builder.SetContrast(1.0);
   FacadeRows rows(context, &factory);
   Random random(context.seed, kHouseStream);
   rows.AddAlongRoad(-1, &random);

@@ -25,9 +25,10 @@ int DrawOne(const std::vector<int>& textures, Random* random) {
 
 }  // namespace
 
-HouseFactory::HouseFactory(SceneBuilder* builder, bool night, Random* random)
+HouseFactory::HouseFactory(SceneBuilder* builder, bool night, bool wet, Random* random)
     : builder_(*builder),
       night_(night),
+      wet_(wet),
       uppers_(PaintMany(builder, random, 9, PaintUpperFloors)),
       grounds_(PaintMany(builder, random, 6, PaintGroundFloor)),
       walls_(PaintMany(builder, random, 3, PaintWall)),
@@ -142,6 +143,9 @@ void HouseFactory::AddLitWindows(const Site& site, int floors, Random* random) {
       const Eigen::Vector3d centre =
           site.corner + (axis + 0.5) * cell + (floor + 0.5) * kFloorHeight * kUp - 0.03 * site.inwards;
       builder_.Add(centre - 0.17 * cell + 0.65 * kUp, 0.34 * cell, -1.3 * kUp, material, -site.inwards);
+      if (!wet_) continue;
+      const Eigen::Vector3d mirrored = centre - 2.0 * (floor + 0.5) * kFloorHeight * kUp;
+      builder_.Add(mirrored - 0.17 * cell - 0.65 * kUp, 0.34 * cell, 1.3 * kUp, material, -site.inwards);
     }
   }
 }

@@ -11,7 +11,8 @@ namespace evo::simulation {
 /// Builds houses that share a set of textures.
 class HouseFactory {
  public:
-  HouseFactory(SceneBuilder* builder, bool night, Random* random);
+  /// Lit windows at `night`, with mirror images in a `wet` road.
+  HouseFactory(SceneBuilder* builder, bool night, bool wet, Random* random);
   static constexpr double kAxisWidth = 3.1;  // m: width of the facade per window axis
   /// The ground plan of a house.
   struct Site {
@@ -31,6 +32,7 @@ class HouseFactory {
 
   SceneBuilder& builder_;
   bool night_;
+  bool wet_;
   std::vector<int> uppers_, grounds_, walls_, signs_;
   int roof_ = 0;
   int gable_ = 0;

@@ -15,9 +15,12 @@ constexpr double kOverlap = 14.0;                // m that a side road extends b
 void AddJunctions(const StreetContext& context) {
   if (context.plan.junctions().empty()) return;
   Random random(context.seed, kStream);
-  const int asphalt = context.builder.Add(PaintAsphalt(random, 1024));
+  const double contrast = context.options.road_contrast;
+  const int asphalt = context.builder.Add(PaintAsphalt(random, 1024, contrast));
+  context.builder.SetContrast(contrast);
   const int pavement = context.builder.Add(PaintPavement(random));
   const int ground = context.builder.Add(PaintGround(random));
+  context.builder.SetContrast(1.0);
   const int kerb = context.builder.Add(PaintKerb(random));
   const double width = context.plan.layout().width();
   const double strip = context.plan.pavement();

@@ -64,6 +64,13 @@ void Painter::TintGradient(int x, int y, int width, int height, double top, doub
   }
 }
 
+void Painter::ScaleContrast(double factor) {
+  double sum = 0.0;
+  for (const Texel& texel : texels_) sum += texel.reflectance;
+  const auto mean = static_cast<float>(sum / static_cast<double>(texels_.size()));
+  for (Texel& texel : texels_) texel.reflectance = mean + static_cast<float>(factor) * (texel.reflectance - mean);
+}
+
 void Painter::CutHole(int x, int y, int width, int height) {
   for (int j = y; j < y + height; ++j) {
     for (int i = x; i < x + width; ++i) TexelAt(i, j).coverage = 0.0F;

@@ -28,6 +28,8 @@ class Painter {
   void Tint(int x, int y, int width, int height, double factor);
   /// Multiplies the reflectance by a factor that is linear from top to bottom.
   void TintGradient(int x, int y, int width, int height, double top, double bottom);
+  /// Scales the deviations of the reflectance from its mean by `factor`.
+  void ScaleContrast(double factor);
   /// Sets the coverage to 0.
   void CutHole(int x, int y, int width, int height);
 

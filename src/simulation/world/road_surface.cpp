@@ -1,6 +1,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "simulation/world/street.hpp"
 
@@ -15,6 +16,7 @@ constexpr double kMaxPieceAngle = 0.03;                // rad from piece to piec
 constexpr double kLayer = 0.0005;                      // m: vertical distance of overlapping pieces in bends
 constexpr int kLaneTexels = 2048;                      // length of the lanes' texture
 constexpr double kTexelsPerMetre = 100;                // of pavements and kerbs
+constexpr double kWetReflectivity = 0.3;               // of a wet road at the grazing angles of a camera on a car
 
 struct Piece {
   double from = 0.0;
@@ -26,13 +28,21 @@ struct Piece {
 class RoadPaver {
  public:
   explicit RoadPaver(const StreetContext& context)
-      : plan_(context.plan), builder_(context.builder), random_(context.seed, kStream) {
-    for (int& lanes : lanes_) lanes = builder_.Add(PaintLanes(random_, plan_.layout(), kLaneTexels));
-    asphalt_ = builder_.Add(PaintAsphalt(random_, 1024));
-    zebra_ = builder_.Add(PaintZebra(random_, plan_.layout(), 512));
+      : plan_(context.plan),
+        builder_(context.builder),
+        random_(context.seed, kStream),
+        wetness_(context.options.wetness) {
+    const double contrast = context.options.road_contrast;
+    for (int& lanes : lanes_) lanes = AddRoad(PaintLanes(random_, plan_.layout(), kLaneTexels, contrast));
+    asphalt_ = AddRoad(PaintAsphalt(random_, 1024, contrast));
+    zebra_ = AddRoad(PaintZebra(random_, plan_.layout(), 512, contrast));
+    builder_.SetContrast(contrast);
     pavement_ = builder_.Add(PaintPavement(random_));
+    builder_.SetContrast(1.0);
     kerb_ = builder_.Add(PaintKerb(random_));
+    builder_.SetContrast(contrast);
     ground_ = builder_.Add(PaintGround(random_));
+    builder_.SetContrast(1.0);
   }
 
   void Pave() {
@@ -47,6 +57,12 @@ class RoadPaver {
   }
 
  private:
+  /// A wet road is a mirror, through which the lights' mirror images below it are seen.
+  int AddRoad(Texture texture) {
+    if (wetness_ > 0.0) texture.ScaleCoverage(static_cast<float>(1.0 - kWetReflectivity * wetness_));
+    return builder_.Add(std::move(texture));
+  }
+
   double lane_period() const { return kLaneTexels * plan_.layout().width() / kRoadWidthTexels; }
 
   std::vector<Piece> CutIntoPieces() const {
@@ -171,12 +187,16 @@ class RoadPaver {
     material.texture = ground_;
     material.texel_origin = {0.0, from * 25.0};
     material.texels = {(reach[0] + reach[1]) * 25.0, (to - from) * 25.0};
-    AddStrip(from, to, -reach[0], reach[1], -0.10 - 0.0001 * layer, layer, material);
+    const double up = -0.10 - 0.0001 * layer;
+    if (wetness_ == 0.0) return AddStrip(from, to, -reach[0], reach[1], up, layer, material);
+    AddStrip(from, to, -reach[0], plan_.kerb(-1), up, layer, material);
+    AddStrip(from, to, plan_.kerb(1), reach[1], up, layer, material);
   }
 
   const StreetPlan& plan_;
   SceneBuilder& builder_;
   Random random_;
+  double wetness_;
   int lanes_[2] = {0, 0};
   int asphalt_ = 0;
   int zebra_ = 0;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <optional>
 #include <vector>
 
 #include "evo/core/time.hpp"
@@ -48,6 +50,14 @@ struct Lighting {
   std::vector<Lamp> lamps;     ///< street lamps
 };
 
+/// The bonnet of the camera's own car. It mirrors the scene (render/bonnet_mirror.hpp).
+struct Bonnet {
+  double edge = 0.0;          ///< of its front, straight ahead: tangent of the angle below the horizon
+  double reflectivity = 0.0;  ///< at normal incidence
+  double radiance = 0.0;      ///< of its paint
+  Eigen::Quaterniond R_vehicle_cam = Eigen::Quaterniond::Identity();
+};
+
 /// Light of the street lamps at `t` relative to its mean: 1 + depth sin(2 pi f t).
 double Flicker(const Lighting& lighting, TimeNs t);
 
@@ -56,6 +66,7 @@ struct Scene {
   std::vector<Surface> surfaces;
   std::vector<Body> bodies;  ///< at least the static world
   Lighting lighting;
+  std::optional<Bonnet> bonnet;
 };
 
 /// T_world_body of `body` at `t`; the identity for body 0.

@@ -15,6 +15,7 @@ SceneBuilder::SceneBuilder() {
 }
 
 int SceneBuilder::Add(Texture texture) {
+  if (contrast_ != 1.0) texture.ScaleContrast(static_cast<float>(contrast_));
   scene_.textures.push_back(std::move(texture));
   return static_cast<int>(scene_.textures.size()) - 1;
 }

@@ -35,6 +35,8 @@ class SceneBuilder {
   /// Returns the body's index.
   int AddBody(Body body);
   void SetSun(const Sun& sun) { sun_ = sun; }
+  /// The contrast of the textures that follow over that of their painting, in [0, 1].
+  void SetContrast(double contrast) { contrast_ = contrast; }
 
   /// Adds a surface, shaded for the normal on the side of `outwards`.
   void Add(const Eigen::Vector3d& origin, const Eigen::Vector3d& edge_u, const Eigen::Vector3d& edge_v,
@@ -50,6 +52,7 @@ class SceneBuilder {
  private:
   Scene scene_;
   Sun sun_;
+  double contrast_ = 1.0;
 };
 
 }  // namespace evo::simulation

@@ -12,9 +12,9 @@ constexpr std::uint64_t kSunStream = 0x73756E;  // "sun"
 constexpr double kSunRatio = 0.55;              // of sunlight, by day
 constexpr double kNightSky = 0.003;             // radiance: just above the sensor's dark current
 
-Sun DrawSun(std::uint64_t seed, bool night) {
+Sun DrawSun(std::uint64_t seed, bool day) {
   Sun sun;
-  if (night) return sun;
+  if (!day) return sun;
   Random random(seed, kSunStream);
   const double azimuth = random.Uniform(0.0, 2.0 * std::numbers::pi);
   const double elevation = random.Uniform(0.6, 1.1);
@@ -27,8 +27,9 @@ Sun DrawSun(std::uint64_t seed, bool night) {
 Lighting StreetLighting(const StreetOptions& options) {
   Lighting lighting;
   if (options.light == "day") return lighting;
-  lighting.ambient = options.night_ambient;
-  lighting.sky = kNightSky;
+  const bool dusk = options.light == "dusk";
+  lighting.ambient = dusk ? options.dusk_ambient : options.night_ambient;
+  lighting.sky = dusk ? lighting.sky * options.dusk_ambient : kNightSky;
   lighting.head_lamps = options.head_lamps;
   lighting.flicker_hz = options.lamp_flicker_hz;
   return lighting;
@@ -40,8 +41,8 @@ Scene MakeStreet(const ReferenceLine& road, const StreetOptions& options, double
                  const std::function<double(TimeNs)>& camera_distance_m) {
   const auto plan = std::make_shared<const StreetPlan>(road, options, camera_height_m);
   SceneBuilder builder;
-  const bool night = options.light == "night";
-  builder.SetSun(DrawSun(seed, night));
+  const bool night = options.light != "day";
+  builder.SetSun(DrawSun(seed, !night));
   builder.lighting() = StreetLighting(options);
   const StreetContext context{plan, options, builder, seed, night};
   AddRoadSurface(context);
@@ -52,6 +53,9 @@ Scene MakeStreet(const ReferenceLine& road, const StreetOptions& options, double
   AddParkedCars(context);
   AddOncomingCars(context);
   AddCarsAhead(context, camera_distance_m);
+  AddLorry(context, camera_distance_m);
+  AddPedestrians(context);
+  AddCrossingPedestrians(context, camera_distance_m);
   return builder.Take();
 }
 

@@ -13,8 +13,8 @@
 
 namespace evo::simulation {
 
-/// The layout of a street in its Frenet frame: distance along the road's reference line, which is the centre of the
-/// camera's lane, lateral offset from it (positive to the right) and height above the road, m.
+/// The layout of a street in its Frenet frame: distance along the road's reference line, which is the camera's path,
+/// lateral offset from it (positive to the right) and height above the road, m.
 class StreetPlan {
  public:
   /// A part of the road without kerbs and houses, where another road meets it.
@@ -43,8 +43,11 @@ class StreetPlan {
   double end() const { return road_.length() + kAhead; }
   /// Of the carriageway with its parking strips.
   const CarriagewayLayout& layout() const { return layout_; }
+  int own_side() const { return own_side_; }  ///< of the centre line that the camera drives on
   // Lateral offsets; side -1: left, 1: right.
-  double centre_line() const { return -0.25 * layout_.lanes_m; }
+  double centre_line() const { return own_lane() - 0.25 * own_side_ * layout_.lanes_m; }
+  double own_lane() const { return own_lane_; }  ///< its centre
+  double other_lane() const { return own_lane() - 0.5 * own_side_ * layout_.lanes_m; }
   double kerb(int side) const { return centre_line() + 0.5 * side * layout_.width(); }
   double house_line(int side) const { return kerb(side) + side * pavement_; }
   double pavement() const { return pavement_; }  ///< width, m
@@ -70,6 +73,8 @@ class StreetPlan {
   CarriagewayLayout layout_;
   double pavement_;
   double camera_height_;
+  int own_side_;
+  double own_lane_;
   std::vector<Junction> junctions_;
   std::vector<Circle> occupied_;  ///< by roads and pavements
 };
@@ -83,7 +88,7 @@ struct StreetContext {
   const StreetOptions& options;
   SceneBuilder& builder;
   std::uint64_t seed = 0;
-  bool night = false;
+  bool night = false;  ///< lamps are on
   const StreetPlan& plan = *shared_plan;
 };
 void AddRoadSurface(const StreetContext& context);
@@ -94,5 +99,8 @@ void AddPoles(const StreetContext& context);
 void AddParkedCars(const StreetContext& context);
 void AddOncomingCars(const StreetContext& context);
 void AddCarsAhead(const StreetContext& context, const std::function<double(TimeNs)>& camera_distance_m);
+void AddLorry(const StreetContext& context, const std::function<double(TimeNs)>& camera_distance_m);
+void AddPedestrians(const StreetContext& context);
+void AddCrossingPedestrians(const StreetContext& context, const std::function<double(TimeNs)>& camera_distance_m);
 
 }  // namespace evo::simulation

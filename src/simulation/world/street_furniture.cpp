@@ -11,9 +11,11 @@ namespace {
 
 constexpr std::uint64_t kTreeStream = 0x74726565;  // "tree"
 constexpr std::uint64_t kPoleStream = 0x706F6C65;  // "pole"
+constexpr double kCanopyHeight = 4.6;              // m of trunk below a crown that hangs over the road
 constexpr double kLampHeight = 7.0;                // m
 constexpr double kLampReach = 2.2;                 // m over the road
 constexpr double kLampIntensity = 6.0;             // Lamp::intensity: radiance 0.12 of a white road below it
+constexpr double kLampEmission = 2.0;              // radiance
 const Eigen::Vector3d kUp(0.0, -1.0, 0.0);
 
 /// Level unit vector.
@@ -43,6 +45,14 @@ void AddCrown(SceneBuilder* builder, const Eigen::Vector3d& centre, double size,
   }
 }
 
+/// The mirror image of a street lamp in a wet road, drawn out by the road's roughness.
+void AddReflection(SceneBuilder* builder, const Eigen::Vector3d& centre, double angle, int glow) {
+  constexpr double kHeight = 5.0;  // m
+  Material material = builder->WholeTexture(glow);
+  material.emission = kLampEmission;
+  AddStem(builder, centre - 0.5 * kHeight * kUp, kHeight, 0.8, angle, material);
+}
+
 }  // namespace
 
 void AddTrees(const StreetContext& context) {
@@ -56,15 +66,18 @@ void AddTrees(const StreetContext& context) {
   for (int i = 0; i < count; ++i) {
     const double s = plan.begin() + (i + random.Uniform(0.1, 0.9)) * length / count;
     const int side = random.Chance(0.5) ? 1 : -1;
-    const double size = random.Uniform(3.0, 4.4);
-    const double trunk = random.Uniform(2.4, 3.2);
+    double size = random.Uniform(3.0, 4.4);
+    double trunk = random.Uniform(2.4, 3.2);
     const double angle = random.Uniform(0.0, std::numbers::pi);
     // The crown keeps clear of the camera's path.
     const double lateral = side * std::max(side * plan.kerb(side) + 0.8, 1.2 + 0.6 * size);
     const Eigen::Vector3d foot = plan.PointAt(s, lateral, kKerbHeight);
     if (!plan.IsClearOfJunctions(s, s, 1.0)) continue;
+    const bool canopy = context.options.canopy > 0.0 && random.Chance(context.options.canopy);
+    if (canopy) size *= 1.9, trunk = kCanopyHeight;
+    const Eigen::Vector3d reach = canopy ? (-0.3 * size * side * plan.Right(s)).eval() : Eigen::Vector3d::Zero();
     AddStem(&context.builder, foot, trunk + 0.4, 0.32, angle, context.builder.WholeTexture(bark));
-    AddCrown(&context.builder, foot + (trunk + 0.42 * size) * kUp, size, crowns[random.Index(2)], &random);
+    AddCrown(&context.builder, foot + reach + (trunk + 0.42 * size) * kUp, size, crowns[random.Index(2)], &random);
   }
 }
 
@@ -76,6 +89,7 @@ void AddPoles(const StreetContext& context) {
   if (count == 0) return;
   SceneBuilder& builder = context.builder;
   const int metal = builder.Add(PaintPlain(random, 0.35));
+  const int glow = context.options.wetness > 0.0 ? builder.Add(PaintGlow()) : -1;
   const int signs[] = {builder.Add(PaintTrafficSign(random)), builder.Add(PaintTrafficSign(random)),
                        builder.Add(PaintTrafficSign(random))};
   for (int i = 0; i < count; ++i) {
@@ -92,8 +106,9 @@ void AddPoles(const StreetContext& context) {
     builder.Add(foot + kLampHeight * kUp, kLampReach * out, -0.1 * kUp, material, forward);
     Material lamp = builder.WholeTexture(metal);
     if (context.night) {
-      lamp.emission = 2.0;
+      lamp.emission = kLampEmission;
       context.builder.lighting().lamps.push_back({head, kLampIntensity});
+      if (glow >= 0) AddReflection(&builder, foot - kLampHeight * kUp + kLampReach * out, plan.Heading(s), glow);
     }
     builder.Add(head - 0.35 * out - 0.15 * forward, 0.7 * out, 0.3 * forward, lamp, -kUp);
     if (sign < 0) continue;

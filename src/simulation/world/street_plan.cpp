@@ -19,7 +19,9 @@ StreetPlan::StreetPlan(const ReferenceLine& road, const StreetOptions& options, 
     : road_(road),
       layout_{options.road_width_m, options.parking_width_m, options.parked_cars_per_100_m > 0.0},
       pavement_(options.pavement_width_m),
-      camera_height_(camera_height_m) {
+      camera_height_(camera_height_m),
+      own_side_(options.left_hand_traffic ? -1 : 1),
+      own_lane_(-options.camera_lateral_m) {
   for (const double distance : road.junctions()) AddJunction(distance);
   MarkRoads();
 }

@@ -64,6 +64,17 @@ void Texture::AddLevel(const Level& finer) {
   levels_.push_back(level);
 }
 
+void Texture::ScaleContrast(float factor) {
+  if (samples_.back().coverage <= 0.0F) return;
+  const float mean = samples_.back().reflected / samples_.back().coverage;
+  for (Sample& s : samples_) s.reflected = mean * s.coverage + factor * (s.reflected - mean * s.coverage);
+}
+
+void Texture::ScaleCoverage(float factor) {
+  for (Sample& s : samples_) s = {factor * s.reflected, factor * s.coverage};
+  solid_ = solid_ && factor >= 1.0F;
+}
+
 // BilinearCell of core does not fit: coordinates may be negative, and a right neighbour may be the row's first texel.
 Texture::Sample Texture::Bilinear(const Level& level, float u, float v) const {
   const float x = u * level.scale_u - 0.5F;

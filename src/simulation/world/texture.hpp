@@ -20,6 +20,12 @@ class Texture {
 
   int width() const { return levels_.front().width; }
   int height() const { return levels_.front().height; }
+  /// Scales the deviations of the reflectance from its mean by `factor`, on all levels alike.
+  void ScaleContrast(float factor);
+
+  /// Makes the texture see-through: scales its coverage by `factor` below 1.
+  void ScaleCoverage(float factor);
+
   /// True for a texture without holes.
   bool solid() const { return solid_; }
 

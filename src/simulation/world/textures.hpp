@@ -15,13 +15,13 @@ struct CarriagewayLayout {
   double width() const { return lanes_m + 2.0 * parking_m; }
 };
 inline constexpr int kRoadWidthTexels = 1024;
-// kRoadWidthTexels x `length` square texels of layout.width() / kRoadWidthTexels.
-/// Asphalt with patches, cracks and tar.
-Texture PaintAsphalt(Random& random, int length);
+// kRoadWidthTexels x `length` square texels of layout.width() / kRoadWidthTexels. `contrast` is that of the asphalt, 1
+// for one with patches, cracks, tar and stains, 0 for a plain one. Markings keep theirs.
+Texture PaintAsphalt(Random& random, int length, double contrast = 1.0);
 /// Asphalt with a dashed centre line, edge lines and parking bays.
-Texture PaintLanes(Random& random, const CarriagewayLayout& layout, int length);
+Texture PaintLanes(Random& random, const CarriagewayLayout& layout, int length, double contrast = 1.0);
 /// Asphalt with a zebra crossing.
-Texture PaintZebra(Random& random, const CarriagewayLayout& layout, int length);
+Texture PaintZebra(Random& random, const CarriagewayLayout& layout, int length, double contrast = 1.0);
 /// 512 x 512 texels of 1 cm.
 Texture PaintPavement(Random& random);
 /// 512 x 16 texels of 1 cm.
@@ -64,6 +64,14 @@ Texture PaintCarPaint(Random& random);
 Texture PaintCarGlass(Random& random);
 /// The shadow under a car with soft edges, 64 x 128.
 Texture PaintCarShadow();
+
+/// The frame and the wheels of a lorry below its box, with holes around them, 512 x 64.
+Texture PaintChassis();
+/// Head, trunk and arms of a pedestrian with holes around them, 64 x 128.
+Texture PaintTorso(Random& random);
+
+/// A spot of light with soft edges, 64 x 64.
+Texture PaintGlow();
 
 /// Lettering in a frame, 256 x 64.
 Texture PaintShopSign(Random& random);

@@ -50,21 +50,23 @@ void PaintCracks(Random& random, Painter* painter) {
   }
 }
 
-Painter MakeAsphaltPainter(Random& random, int length) {
+Painter MakeAsphaltPainter(Random& random, int length, double contrast) {
   Painter painter(kRoadWidthTexels, length, random.Uniform(0.22, 0.28));
   const int area = kRoadWidthTexels * length;
   PaintPatches(random, &painter, std::max(1, area / 160'000));
   PaintCracks(random, &painter);
   for (int i = 0; i < std::max(1, area / 800'000); ++i) PaintManhole(random, &painter);
+  if (contrast != 1.0) painter.ScaleContrast(contrast);
   return painter;
 }
 
 /// Stones, dirt and wear over everything including the markings.
-Texture Weather(Random& random, Painter* painter) {
-  painter->Noise(random, 256, 256, 3, 0.015, 0.8);
-  painter->Noise(random, 32, 64, 4, 0.015, 0.8);
-  painter->Grain(random, 0.02);
-  for (int i = 0; i < painter->width() * painter->height() / 8000; ++i) {  // oil, leaves, chewing gum
+Texture Weather(Random& random, Painter* painter, double contrast) {
+  painter->Noise(random, 256, 256, 3, 0.015 * contrast, 0.8);
+  painter->Noise(random, 32, 64, 4, 0.015 * contrast, 0.8);
+  painter->Grain(random, 0.02 * contrast);
+  const int stains = static_cast<int>(contrast * (painter->width() * painter->height() / 8000));
+  for (int i = 0; i < stains; ++i) {  // oil, leaves, chewing gum
     const double radius = random.Uniform(1.0, 4.5);
     painter->Ellipse(random.Uniform() * painter->width(), random.Uniform() * painter->height(), radius,
                      radius * random.Uniform(0.5, 1.0), random.Chance(0.6) ? 0.1 : random.Uniform(0.3, 0.5));
@@ -83,13 +85,13 @@ void MarkRectangle(Random& random, Painter* painter, int x, int y, int width, in
 
 }  // namespace
 
-Texture PaintAsphalt(Random& random, int length) {
-  Painter painter = MakeAsphaltPainter(random, length);
-  return Weather(random, &painter);
+Texture PaintAsphalt(Random& random, int length, double contrast) {
+  Painter painter = MakeAsphaltPainter(random, length, contrast);
+  return Weather(random, &painter, contrast);
 }
 
-Texture PaintLanes(Random& random, const CarriagewayLayout& layout, int length) {
-  Painter painter = MakeAsphaltPainter(random, length);
+Texture PaintLanes(Random& random, const CarriagewayLayout& layout, int length, double contrast) {
+  Painter painter = MakeAsphaltPainter(random, length, contrast);
   const double texels_per_m = kRoadWidthTexels / layout.width();
   const auto texels = [&](double metres) { return static_cast<int>(std::lround(metres * texels_per_m)); };
   const int line = std::max(2, texels(0.14));
@@ -104,17 +106,17 @@ Texture PaintLanes(Random& random, const CarriagewayLayout& layout, int length) 
     MarkRectangle(random, &painter, 0, i * length / bays, park, line);
     MarkRectangle(random, &painter, kRoadWidthTexels - park, i * length / bays, park, line);
   }
-  return Weather(random, &painter);
+  return Weather(random, &painter, contrast);
 }
 
-Texture PaintZebra(Random& random, const CarriagewayLayout& layout, int length) {
-  Painter painter = MakeAsphaltPainter(random, length);
+Texture PaintZebra(Random& random, const CarriagewayLayout& layout, int length, double contrast) {
+  Painter painter = MakeAsphaltPainter(random, length, contrast);
   const double texels_per_m = kRoadWidthTexels / layout.width();
   const auto texels = [&](double metres) { return static_cast<int>(std::lround(metres * texels_per_m)); };
   for (double x = 0.3; x + 0.5 < layout.width(); x += 1.0) {
     MarkRectangle(random, &painter, texels(x), texels(0.3), texels(0.5), texels(3.0));
   }
-  return Weather(random, &painter);
+  return Weather(random, &painter, contrast);
 }
 
 Texture PaintPavement(Random& random) {

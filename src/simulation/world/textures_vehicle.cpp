@@ -92,4 +92,40 @@ Texture PaintCarShadow() {
   return Texture(64, 128, texels);
 }
 
+Texture PaintGlow() {
+  std::vector<Texel> texels(64 * 64);
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      const double square = std::pow((x - 31.5) / 31.5, 2) + std::pow((y - 31.5) / 31.5, 2);
+      texels[static_cast<std::size_t>(y) * 64 + x] = {0.06F, static_cast<float>(std::max(0.0, 1.0 - square))};
+    }
+  }
+  return Texture(64, 64, texels);
+}
+
+Texture PaintChassis() {
+  Painter painter(512, 64, 0.08, 0.0);
+  painter.Rectangle(0, 0, 512, 24, 0.08);
+  for (const double x : {60.0, 380.0, 450.0}) {
+    painter.Ellipse(x, 34.0, 33.0, 30.0, 0.06);
+    painter.Ellipse(x, 34.0, 17.0, 15.0, 0.45);
+    painter.Ellipse(x, 34.0, 5.0, 5.0, 0.1);
+  }
+  return painter.Finish();
+}
+
+Texture PaintTorso(Random& random) {
+  const double coat = random.Chance(0.5) ? random.Uniform(0.08, 0.25) : random.Uniform(0.3, 0.7);
+  Painter painter(64, 128, coat, 0.0);
+  painter.Ellipse(32.0, 46.0, 21.0, 16.0, coat);
+  painter.Rectangle(11, 46, 42, 54, coat);
+  painter.Rectangle(16, 96, 32, 31, coat);
+  for (const int x : {4, 52}) painter.Rectangle(x, 44, 8, 60, 0.8 * coat);
+  painter.Ellipse(32.0, 16.0, 10.0, 14.0, 0.4);
+  painter.Ellipse(32.0, 9.0, 10.0, 8.0, random.Uniform(0.06, 0.3));
+  if (random.Chance(0.5)) painter.Rectangle(14, 58, 36, 9, random.Uniform(0.1, 0.8));
+  painter.Rectangle(31, 46, 2, 54, 0.5 * coat);
+  return painter.Finish();
+}
+
 }  // namespace evo::simulation

@@ -25,12 +25,13 @@ constexpr double kStandingGap = 7.0;  // m from centre to centre at rest
 /// Builds cars of a few shapes. The frame of a car lies on the ground below its centre: x right, y down, z forward.
 class CarFactory {
  public:
-  CarFactory(SceneBuilder* builder, bool night, Random* random) : builder_(*builder), night_(night) {
+  CarFactory(const StreetContext& context, Random* random) : builder_(context.builder), night_(context.night) {
     for (std::size_t i = 0; i < sides_.size(); ++i) sides_[i] = builder_.Add(PaintCarSide(kRears[i]));
     for (const bool front : {false, true}) ends_[front ? 1 : 0] = builder_.Add(PaintCarEnd(*random, front));
     paint_ = builder_.Add(PaintCarPaint(*random));
     glass_ = builder_.Add(PaintCarGlass(*random));
     shadow_ = builder_.Add(PaintCarShadow());
+    if (context.options.wetness > 0.0) glow_ = builder_.Add(PaintGlow());
   }
 
   /// Adds a car to `body`.
@@ -96,6 +97,10 @@ class CarFactory {
       const double x = side * 0.5 * kWidth;
       Add({x, -0.75, 0.5 * kLength + 0.01}, {0.22, 0.0, 0.0}, {0.0, 0.14, 0.0}, paint_, 1.0, {0.0, 0.0, 1.0}, 3.0);
       Add({x, -0.8, -0.5 * kLength - 0.01}, {0.22, 0.0, 0.0}, {0.0, 0.12, 0.0}, paint_, 1.0, {0.0, 0.0, -1.0}, 0.4);
+      if (glow_ < 0) continue;
+      // Their mirror images in the wet road, drawn out by its roughness.
+      Add({x, 0.3, 0.5 * kLength + 0.01}, {0.25, 0.0, 0.0}, {0.0, 0.9, 0.0}, glow_, 1.0, {0.0, 0.0, 1.0}, 3.0);
+      Add({x, 0.3, -0.5 * kLength - 0.01}, {0.25, 0.0, 0.0}, {0.0, 0.9, 0.0}, glow_, 1.0, {0.0, 0.0, -1.0}, 0.4);
     }
   }
 
@@ -106,6 +111,7 @@ class CarFactory {
   int paint_ = 0;
   int glass_ = 0;
   int shadow_ = 0;
+  int glow_ = -1;  ///< -1: the road is dry
   geometry::SE3 T_body_car_;
   int body_ = 0;
   double tone_ = 1.0;
@@ -128,7 +134,7 @@ void AddParkedCars(const StreetContext& context) {
   const double length = plan.end() - plan.begin();
   const int count = static_cast<int>(std::lround(context.options.parked_cars_per_100_m * length / 100.0));
   if (count == 0 || plan.layout().parking_m < kWidth + 0.2) return;
-  CarFactory cars(&context.builder, context.night, &random);
+  CarFactory cars(context, &random);
   for (const int side : {-1, 1}) {
     const int on_side = side < 0 ? count / 2 : count - count / 2;
     // One car a slot, so that no two overlap.
@@ -137,7 +143,7 @@ void AddParkedCars(const StreetContext& context) {
       const double s = plan.begin() + i * slot + 0.5 * kLength + random.Uniform(0.3, slot - kLength);
       const double lateral = plan.kerb(side) - side * (0.5 * kWidth + 0.1 + random.Uniform(0.0, 0.1));
       if (!plan.IsClearOfJunctions(s - 0.5 * kLength, s + 0.5 * kLength, 4.0)) continue;
-      cars.Build(CarPose(plan, s, lateral, side < 0), 0, &random);
+      cars.Build(CarPose(plan, s, lateral, side != plan.own_side()), 0, &random);
     }
   }
 }
@@ -149,7 +155,7 @@ void AddOncomingCars(const StreetContext& context) {
   const double length = context.plan.end() - from;
   const int count = static_cast<int>(std::lround(options.oncoming_cars_per_100_m * length / 100.0));
   if (count == 0) return;
-  CarFactory cars(&context.builder, context.night, &random);
+  CarFactory cars(context, &random);
   const double spacing = length / count;
   const double first = random.Uniform(0.0, length);
   for (int i = 0; i < count; ++i) {
@@ -157,7 +163,7 @@ void AddOncomingCars(const StreetContext& context) {
     Body body;
     body.T_world_body = [=, plan = context.shared_plan, speed = options.oncoming_car_speed_m_s](TimeNs t) {
       const double passed = std::fmod(start - speed * ToSeconds(t), length);
-      return CarPose(*plan, from + (passed < 0.0 ? passed + length : passed), -0.5 * plan->layout().lanes_m, true);
+      return CarPose(*plan, from + (passed < 0.0 ? passed + length : passed), plan->other_lane(), true);
     };
     cars.Build(geometry::SE3(), context.builder.AddBody(std::move(body)), &random);
   }
@@ -166,13 +172,13 @@ void AddOncomingCars(const StreetContext& context) {
 void AddCarsAhead(const StreetContext& context, const std::function<double(TimeNs)>& camera_distance_m) {
   if (context.options.cars_ahead == 0 || !camera_distance_m) return;
   Random random(context.seed, kAheadStream);
-  CarFactory cars(&context.builder, context.night, &random);
+  CarFactory cars(context, &random);
   for (int i = 1; i <= context.options.cars_ahead; ++i) {
     const double gap = kStandingGap * i + random.Uniform(0.0, 2.0);
     const TimeNs headway = FromSeconds(kHeadway * i);
     Body body;
     body.T_world_body = [=, plan = context.shared_plan](TimeNs t) {
-      return CarPose(*plan, camera_distance_m(t + headway) + gap, 0.0, false);
+      return CarPose(*plan, camera_distance_m(t + headway) + gap, plan->own_lane(), false);
     };
     cars.Build(geometry::SE3(), context.builder.AddBody(std::move(body)), &random);
   }
