@@ -41,7 +41,7 @@ PROPERTIES = [("motion.vehicle.speed_m_s", "m/s"), ("camera.width_px", "px"), ("
 def row_of(sequence: Sequence, method: str, results: Path) -> Row:
     """The row of a drive and method."""
     manifest, summary = Manifest(results / "manifest.json"), Summary(results / "summary.csv")
-    metric = Manifest(results / "metric" / "manifest.json").value("scale") == "metric"
+    metric = Manifest(results / "metric" / "manifest.json").value("scale") == "ground"
     metric_scale = Summary(results / "metric" / "judged" / "summary.csv").number("origin-scale", "scale")
     coverage = coverage_since_start(results / "trajectory.txt", results / "tracks.txt")
     failure = failure_of(results)

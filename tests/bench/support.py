@@ -42,7 +42,7 @@ name = Path(value("--events") or "").name.split("_")
 seed = int(name[-2]) if len(name) > 2 and name[-2].isdigit() else 0
 manifest = {"counts": {"events": 1000, "positive_events": 400, "track_observations": 200, "event_frames": 10,
                        "frames_lost": 0},
-            "rebootstraps": [], "wall_time_s": {"track": 0.1 * seed, "write_tracks": 0.0, "odometry": 0.05,
+            "rebootstraps": [], "scale": "ground" if "odometry.ground.camera_height_m=1.6" in words else "arbitrary", "wall_time_s": {"track": 0.1 * seed, "write_tracks": 0.0, "odometry": 0.05,
             "simulate": 1.0, "read": 0.1, "evaluate": 0.2, "write": 0.3}, "recorded_s": 1.0, "cpu_time_s": 0.2,
             "peak_memory_mb": 50.0, "parameters": {"output": {"start_s": 100}}}
 (out / "manifest.json").write_text(json.dumps(manifest))
