@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <random>
 
 #include "tracking/patch_events.hpp"
 
@@ -20,6 +21,19 @@ EventHistogram TemplateOf(const events::LocalEvents& events) {
     histogram.Vote(events.x[i], events.y[i], histogram.PlaneOf(events.polarity[i]), 1.0f);
   }
   return histogram;
+}
+
+/// Events at random places of the template.
+events::LocalEvents NoiseEvents(int count, unsigned seed) {
+  std::mt19937 random(seed);
+  const auto uniform = [&] { return static_cast<float>(static_cast<double>(random()) / 4294967296.0); };
+  events::LocalEvents events;
+  for (int i = 0; i < count; ++i) {
+    const float x = 38.0f * uniform() - 19.0f;
+    const float y = 38.0f * uniform() - 19.0f;
+    events.push_back(x, y, 0.0f, i % 2 ? 1 : -1);
+  }
+  return events;
 }
 
 TEST(AlignToTemplate, RecoversAKnownAffineMotion) {
@@ -45,6 +59,32 @@ TEST(AlignToTemplate, RecoversAKnownAffineMotion) {
   EXPECT_LT((motion.offset - truth.offset).norm(), 0.15);
   EXPECT_LT((motion.flow - truth.flow).norm(), 12.0);
   EXPECT_LT((motion.linear - truth.linear).norm(), 0.04);
+}
+
+TEST(MeanLogLikelihoodRatio, TellsAPatternFromNoise) {
+  AssociationTable table;
+  table.Build(TemplateOf(PatchEvents({}, 0.01, 300, 1)), 1.0, 0.2);
+  EXPECT_GT(MeanLogLikelihoodRatio(PatchEvents({}, 0.01, 300, 2), table, 2, {}), 0.8);
+  EXPECT_LT(MeanLogLikelihoodRatio(NoiseEvents(300, 2), table, 2, {}), 0.0) << "noise under a pattern";
+  table.Build(TemplateOf(NoiseEvents(300, 1)), 1.0, 0.2);
+  EXPECT_LT(MeanLogLikelihoodRatio(NoiseEvents(300, 2), table, 2, {}), 0.0) << "noise under other noise";
+  EXPECT_EQ(MeanLogLikelihoodRatio({}, table, 2, {}), 0.0);
+}
+
+TEST(MeanLogLikelihoodRatio, IsTheMeanOfTheLogarithmsOverTheEvents) {
+  const events::LocalEvents events = PatchEvents({}, 0.01, 37, 2);  // not a multiple of eight
+  const EventHistogram histogram = TemplateOf(PatchEvents({}, 0.01, 300, 1));
+  AssociationTable table;
+  table.Build(histogram, 1.0, 0.2);
+  double sum = 0.0, weight = 0.0;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const int plane = histogram.PlaneOf(events.polarity[i]);
+    const Eigen::Array4d at = table.Interpolate(events.x[i], events.y[i], plane).cast<double>();
+    if (!(at[3] > 0.0)) continue;
+    sum -= at[3] * (std::log(1.0 - at[0] / at[3]) + static_cast<double>(table.log_even_density(plane)));
+    weight += at[3];
+  }
+  EXPECT_NEAR(MeanLogLikelihoodRatio(events, table, 2, {}), sum / weight, 1e-3);
 }
 
 TEST(TemplatePoints, InvertTheMotion) {

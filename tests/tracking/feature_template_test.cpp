@@ -20,7 +20,7 @@ events::LocalEvents EventsAt(float x, float y, std::size_t count) {
 FeatureTemplate MakeTemplate() {
   EventHistogram first(12, 1);
   Accumulate(EventsAt(-3.0f, 0.0f, 40), {}, &first);
-  return FeatureTemplate(first);
+  return FeatureTemplate(first, {});
 }
 
 float CellAt(const FeatureTemplate& model, int x, int y) {
@@ -34,7 +34,7 @@ void Learn(FeatureTemplate* model, double elapsed_s, PatchShape* shape) {
   model->AddTime(elapsed_s);
   PatchMotion motion;
   motion.linear = shape->linear;
-  model->Learn(EventsAt(2.0f, 0.0f, 100), motion, kHalfWindow, options, shape);
+  model->Learn({EventsAt(2.0f, 0.0f, 100), motion, kHalfWindow, 0.0}, options, shape);
 }
 
 TEST(FeatureTemplate, WeighsWindowsEquallyHoweverManyEventsTheyHold) {

@@ -17,7 +17,8 @@ namespace evo::tracking::testing {
 using Motion = std::function<Eigen::Vector2d(double)>;
 
 /// Small crosses at random places that move together. Every point of a cross fires at a steady rate at its pixel,
-/// without a lag; the two arms have opposite polarities.
+/// without a lag; the two arms have opposite polarities at first. Like an edge's, the polarity of an arm changes when the
+/// motion crosses the arm the other way.
 struct CrossScene {
   int width = 120;
   int height = 90;
@@ -31,6 +32,8 @@ struct CrossScene {
       if (std::ranges::all_of(centres, [&](const auto& o) { return (o - c).norm() > 14.0; })) centres.push_back(c);
     }
   }
+
+  static constexpr double kStepS = 1e-4;  // of the difference that tells the velocity
 
   events::EventColumns Events(const Motion& motion, double duration_s, double rate_hz = 500.0,
                               unsigned seed = 3) const {
@@ -51,7 +54,10 @@ struct CrossScene {
             const int x = static_cast<int>(std::lround(p.x()));
             const int y = static_cast<int>(std::lround(p.y()));
             if (x < 0 || y < 0 || x >= width || y >= height) continue;
-            events.push_back({FromSeconds(t), x, y, upright ? 1 : -1});
+            const Eigen::Vector2d step = motion(t + kStepS) - motion(t - kStepS);
+            const Eigen::Vector2d first = motion(kStepS) - motion(0.0);
+            const bool is_as_first = (upright ? step.x() * first.x() : step.y() * first.y()) >= 0.0;
+            events.push_back({FromSeconds(t), x, y, upright == is_as_first ? 1 : -1});
           }
         }
       }

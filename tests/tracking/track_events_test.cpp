@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "evo/core/error.hpp"
@@ -72,6 +73,57 @@ TEST_F(TrackEventsTest, TracksFollowAReversal) {
   for (const auto& error : errors) mean += error / static_cast<double>(errors.size());
   EXPECT_LT(MedianNorm(errors), 0.3);
   EXPECT_LT(mean.norm(), 0.4);
+}
+
+/// Motion that starts at `angle`, px.
+struct DirectedMotion {
+  const char* name;
+  Motion motion;
+};
+
+/// Motions that stop, reverse, or turn by 90 degrees in the middle of `kDuration`.
+std::vector<DirectedMotion> TurningMotions(double angle) {
+  const Vector2d along(std::cos(angle), std::sin(angle));
+  const Vector2d across(-along.y(), along.x());
+  const double middle = 0.5 * kDuration;
+  // Smooth speeds, whose integrals are known.
+  const auto slows_down = [](double t) { return 0.6 / M_PI * std::sin(M_PI * t / 0.6); };
+  return {{"reverses", [=](double t) -> Vector2d { return 120.0 * slows_down(t) * along; }},
+          {"turns left",
+           [=](double t) -> Vector2d {
+             const double radius = 120.0 * 2.0 * kDuration / M_PI;
+             const double turned = 0.5 * M_PI * t / kDuration;
+             return radius * (std::sin(turned) * along + (1.0 - std::cos(turned)) * across);
+           }},
+          {"turns round", [=](double t) -> Vector2d {
+             const double radius = 120.0 * kDuration / M_PI;
+             const double turned = M_PI * t / kDuration;
+             return radius * (std::sin(turned) * along + (1.0 - std::cos(turned)) * across);
+           }},
+          {"stops", [=](double t) -> Vector2d {
+             const double moving = std::max(std::abs(t - middle) - 0.05, 0.0);
+             return 120.0 * std::copysign(moving, t - middle) * along;
+           }}};
+}
+
+TEST(TrackEvents, FollowsAMotionThatStopsReversesAndTurnsInEveryDirection) {
+  std::map<std::string, std::vector<Vector2d>> errors_of;
+  for (int direction = 0; direction < 8; ++direction) {
+    for (const auto& [name, motion] : TurningMotions(0.25 * M_PI * direction + 0.1)) {
+      const events::EventColumns events = CrossScene(75, 4).Events(motion, kDuration, 1000.0);
+      for (const auto& error : Errors(ById(TrackAll(events, {}, 1).tracks), motion, 0.2, 0.45)) {
+        errors_of[name].push_back(error);
+      }
+    }
+  }
+  EXPECT_EQ(errors_of.size(), 4u);
+  for (const auto& [name, errors] : errors_of) {
+    EXPECT_GE(errors.size(), 60u) << name;
+    EXPECT_LT(MedianNorm(errors), 0.35) << name;
+    EXPECT_LE(std::ranges::count_if(errors, [](const auto& e) { return e.norm() > 3.0; }),
+              std::ssize(errors) / 20)
+        << name;
+  }
 }
 
 /// Median of the features' distances ahead of the nearest cross, along the scenes' constant velocity, px. Some features
