@@ -9,7 +9,7 @@
 #include "events/flicker/tiles.hpp"
 #include "evo/core/time.hpp"
 #include "evo/events/event_columns.hpp"
-#include "evo/events/flicker_filter.hpp"
+#include "evo/events/flicker.hpp"
 
 namespace evo::events {
 

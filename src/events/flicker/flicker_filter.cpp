@@ -1,15 +1,12 @@
-#include "evo/events/flicker_filter.hpp"
+#include "events/flicker/flicker_filter.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <limits>
 #include <numeric>
 #include <utility>
 #include <vector>
 
-#include "events/flicker/flicker_comb.hpp"
-#include "events/flicker/flicker_detector.hpp"
 #include "evo/core/parameters.hpp"
 
 namespace evo::events {
@@ -40,6 +37,13 @@ void SortByTime(EventColumns* events) {
   *events = std::move(sorted);
 }
 
+/// Forgets the first `count` events.
+void DropFront(std::size_t count, EventColumns* events) {
+  EventColumns rest;
+  for (std::size_t i = count; i < events->size(); ++i) AppendEvent(*events, i, &rest);
+  std::swap(*events, rest);
+}
+
 }  // namespace
 
 void Register(Parameters& p, FlickerOptions& o) {
@@ -49,155 +53,115 @@ void Register(Parameters& p, FlickerOptions& o) {
   p.Add("events.flicker.max_frequency_hz", &o.max_frequency_hz, 50.0, 450.0, "maximum frequency of flicker (Hz)");
 }
 
-class FlickerFilter::Impl {
- public:
-  Impl(int width, int height, const FlickerOptions& options)
-      : tiles_(width, height), remove_(options.remove), detector_(width, height, options), comb_(width, height) {}
-
-  void Apply(EventColumns* block) {
-    if (!remove_ || block->empty()) return;
-    statistics_.events += block->size();
-    detector_.Add(*block, &segments_);
-    waiting_.push_back(std::move(*block));
-    *block = {};
-    while (!waiting_.empty() && !segments_.empty() && waiting_.front().t.back() < segments_.back().end) {
-      Filter(std::move(waiting_.front()), block);
-      waiting_.pop_front();
-    }
-  }
-
-  void Finish(EventColumns* block) {
-    block->clear();
-    if (!remove_) return;
-    segments_.push_back(detector_.Last());
-    if (!waiting_.empty()) last_ = waiting_.back().t.back();
-    for (EventColumns& events : waiting_) Filter(std::move(events), block);
-    if (has_segment_) AddDuration(last_);
-    waiting_.clear();
-    comb_.SetActive(0, 0, {});
-    Merge(kEver, block);
-  }
-
-  FlickerStatistics statistics() const {
-    FlickerStatistics s = statistics_;
-    const double tiles = static_cast<double>(tiles_.size()) * duration_s_;
-    s.tile_ratio = tiles > 0.0 ? tile_seconds_ / tiles : 0.0;
-    s.frequency_hz = s.flicker_events > 0 ? frequency_sum_ / static_cast<double>(s.flicker_events) : 0.0;
-    return s;
-  }
-
- private:
-  /// Appends what is ready of the events until the end of `events` to `out`.
-  void Filter(EventColumns&& events, EventColumns* out) {
-    if (!AnyFlickers(events.t.back())) {
-      EnterSegmentOf(events.t.front());
-      if (out->empty()) {
-        *out = std::move(events);
-      } else {
-        AppendAll(events, out);
-      }
-      return;
-    }
-    for (std::size_t i = 0; i < events.size(); ++i) {
-      const TimeNs t = events.t[i];
-      if (!has_segment_ || t >= segment_end_) EnterSegmentOf(t);
-      if (comb_.any_active()) comb_.AdvanceTo(t, &replaced_);
-      const std::size_t tile = tiles_.TileOf(events.x[i], events.y[i]);
-      if (comb_.any_active() && comb_.IsActive(tile)) {
-        comb_.Add(tile, events.x[i], events.y[i], events.polarity[i]);
-        ++in_segment_;
-      } else {
-        AppendEvent(events, i, &passed_);
-      }
-    }
-    CountEvents();
-    Merge(comb_.any_active() ? comb_.ready() : kEver, out);
-  }
-
-  /// Whether anything flickers until `t`, or events of the comb are left.
-  bool AnyFlickers(TimeNs t) const {
-    if (comb_.any_active() || !passed_.empty() || !replaced_.empty()) return true;
-    for (const FlickerSegment& segment : segments_) {
-      if (!segment.tiles.empty()) return true;
-      if (t < segment.end) break;
-    }
-    return false;
-  }
-
-  void EnterSegmentOf(TimeNs t) {
-    while (segments_.size() > 1 && t >= segments_.front().end) segments_.pop_front();
-    const FlickerSegment& segment = segments_.front();
-    CountEvents();
-    if (has_segment_) AddDuration(t);
-    segment_begin_ = t;
-    flickering_tiles_ = segment.tiles.size();
-    const TimeNs period = segment.tiles.empty() ? 0 : FromSeconds(1.0 / segment.frequency_hz);
-    frequency_hz_ = segment.frequency_hz;
-    comb_.SetActive(t, period, segment.tiles);
-    segment_end_ = segment.end;
-    has_segment_ = true;
-  }
-
-  void CountEvents() {
-    statistics_.flicker_events += in_segment_;
-    frequency_sum_ += frequency_hz_ * static_cast<double>(in_segment_);
-    in_segment_ = 0;
-  }
-
-  void AddDuration(TimeNs end) {
-    const double duration_s = ToSeconds(end - segment_begin_);
-    duration_s_ += duration_s;
-    tile_seconds_ += duration_s * static_cast<double>(flickering_tiles_);
-  }
-
-  /// Appends the events before `end` to `out`, in order of time.
-  void Merge(TimeNs end, EventColumns* out) {
-    SortByTime(&replaced_);
-    std::size_t i = 0;
-    std::size_t j = 0;
-    while (true) {
-      const TimeNs passed = i < passed_.size() ? passed_.t[i] : kEver;
-      const TimeNs replaced = j < replaced_.size() ? replaced_.t[j] : kEver;
-      if (std::min(passed, replaced) >= end) break;
-      passed <= replaced ? AppendEvent(passed_, i++, out) : AppendEvent(replaced_, j++, out);
-    }
-    statistics_.replaced_by += j;
-    DropFront(i, &passed_);
-    DropFront(j, &replaced_);
-  }
-
-  static void DropFront(std::size_t count, EventColumns* events) {
-    EventColumns rest;
-    for (std::size_t i = count; i < events->size(); ++i) AppendEvent(*events, i, &rest);
-    std::swap(*events, rest);
-  }
-
-  FlickerTiles tiles_;
-  bool remove_;
-  FlickerDetector detector_;
-  FlickerComb comb_;
-  std::deque<FlickerSegment> segments_;  // the present one first
-  std::deque<EventColumns> waiting_;     // blocks whose segments are not known yet
-  EventColumns passed_;                  // ordered by time
-  EventColumns replaced_;                // by the comb
-  bool has_segment_ = false;
-  TimeNs last_ = 0;  // stamp of the last event
-  TimeNs segment_begin_ = 0;
-  TimeNs segment_end_ = 0;
-  std::size_t flickering_tiles_ = 0;
-  double frequency_hz_ = 0.0;
-  std::uint64_t in_segment_ = 0;
-  FlickerStatistics statistics_;
-  double frequency_sum_ = 0.0;
-  double tile_seconds_ = 0.0;
-  double duration_s_ = 0.0;
-};
-
 FlickerFilter::FlickerFilter(int width, int height, const FlickerOptions& options)
-    : impl_(std::make_unique<Impl>(width, height, options)) {}
-FlickerFilter::~FlickerFilter() = default;
-void FlickerFilter::Apply(EventColumns* block) { impl_->Apply(block); }
-void FlickerFilter::Finish(EventColumns* block) { impl_->Finish(block); }
-FlickerStatistics FlickerFilter::statistics() const { return impl_->statistics(); }
+    : tiles_(width, height), remove_(options.remove), detector_(width, height, options), comb_(width, height) {}
+
+void FlickerFilter::Apply(EventColumns* block) {
+  if (!remove_ || block->empty()) return;
+  statistics_.events += block->size();
+  detector_.Add(*block, &segments_);
+  waiting_.push_back(std::move(*block));
+  *block = {};
+  while (!waiting_.empty() && !segments_.empty() && waiting_.front().t.back() < segments_.back().end) {
+    Filter(std::move(waiting_.front()), block);
+    waiting_.pop_front();
+  }
+}
+
+void FlickerFilter::Finish(EventColumns* block) {
+  block->clear();
+  if (!remove_) return;
+  segments_.push_back(detector_.Last());
+  if (!waiting_.empty()) last_ = waiting_.back().t.back();
+  for (EventColumns& events : waiting_) Filter(std::move(events), block);
+  if (has_segment_) AddDuration(last_);
+  waiting_.clear();
+  comb_.SetActive(0, 0, {});
+  Merge(kEver, block);
+}
+
+FlickerStatistics FlickerFilter::statistics() const {
+  FlickerStatistics s = statistics_;
+  const double tiles = static_cast<double>(tiles_.size()) * duration_s_;
+  s.tile_ratio = tiles > 0.0 ? tile_seconds_ / tiles : 0.0;
+  s.frequency_hz = s.flicker_events > 0 ? frequency_sum_ / static_cast<double>(s.flicker_events) : 0.0;
+  return s;
+}
+
+void FlickerFilter::Filter(EventColumns&& events, EventColumns* out) {
+  if (!AnyFlickers(events.t.back())) {
+    EnterSegmentOf(events.t.front());
+    if (out->empty()) {
+      *out = std::move(events);
+    } else {
+      AppendAll(events, out);
+    }
+    return;
+  }
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const TimeNs t = events.t[i];
+    if (!has_segment_ || t >= segment_end_) EnterSegmentOf(t);
+    if (comb_.any_active()) comb_.AdvanceTo(t, &replaced_);
+    const std::size_t tile = tiles_.TileOf(events.x[i], events.y[i]);
+    if (comb_.any_active() && comb_.IsActive(tile)) {
+      comb_.Add(tile, events.x[i], events.y[i], events.polarity[i]);
+      ++in_segment_;
+    } else {
+      AppendEvent(events, i, &passed_);
+    }
+  }
+  CountEvents();
+  Merge(comb_.any_active() ? comb_.ready() : kEver, out);
+}
+
+bool FlickerFilter::AnyFlickers(TimeNs t) const {
+  if (comb_.any_active() || !passed_.empty() || !replaced_.empty()) return true;
+  for (const FlickerSegment& segment : segments_) {
+    if (!segment.tiles.empty()) return true;
+    if (t < segment.end) break;
+  }
+  return false;
+}
+
+void FlickerFilter::EnterSegmentOf(TimeNs t) {
+  while (segments_.size() > 1 && t >= segments_.front().end) segments_.pop_front();
+  const FlickerSegment& segment = segments_.front();
+  CountEvents();
+  if (has_segment_) AddDuration(t);
+  segment_begin_ = t;
+  flickering_tiles_ = segment.tiles.size();
+  const TimeNs period = segment.tiles.empty() ? 0 : FromSeconds(1.0 / segment.frequency_hz);
+  frequency_hz_ = segment.frequency_hz;
+  comb_.SetActive(t, period, segment.tiles);
+  segment_end_ = segment.end;
+  has_segment_ = true;
+}
+
+void FlickerFilter::CountEvents() {
+  statistics_.flicker_events += in_segment_;
+  frequency_sum_ += frequency_hz_ * static_cast<double>(in_segment_);
+  in_segment_ = 0;
+}
+
+void FlickerFilter::AddDuration(TimeNs end) {
+  const double duration_s = ToSeconds(end - segment_begin_);
+  duration_s_ += duration_s;
+  tile_seconds_ += duration_s * static_cast<double>(flickering_tiles_);
+}
+
+void FlickerFilter::Merge(TimeNs end, EventColumns* out) {
+  SortByTime(&replaced_);
+  std::size_t i = 0;
+  std::size_t j = 0;
+  while (true) {
+    const TimeNs passed = i < passed_.size() ? passed_.t[i] : kEver;
+    const TimeNs replaced = j < replaced_.size() ? replaced_.t[j] : kEver;
+    if (std::min(passed, replaced) >= end) break;
+    passed <= replaced ? AppendEvent(passed_, i++, out) : AppendEvent(replaced_, j++, out);
+  }
+  statistics_.replaced_by += j;
+  DropFront(i, &passed_);
+  DropFront(j, &replaced_);
+}
 
 }  // namespace evo::events

@@ -1,33 +1,17 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <deque>
 
+#include "events/flicker/flicker_comb.hpp"
+#include "events/flicker/flicker_detector.hpp"
+#include "events/flicker/tiles.hpp"
 #include "evo/core/time.hpp"
 #include "evo/events/event_columns.hpp"
-
-namespace evo {
-class Parameters;
-}
+#include "evo/events/flicker.hpp"
 
 namespace evo::events {
-
-/// Names events.flicker.*.
-struct FlickerOptions {
-  bool remove = true;
-  double min_frequency_hz = 80.0;
-  double max_frequency_hz = 400.0;
-};
-void Register(Parameters& parameters, FlickerOptions& options);
-
-/// What a FlickerFilter has seen so far.
-struct FlickerStatistics {
-  double frequency_hz = 0.0;         ///< of most flickering events; 0: no flicker
-  std::uint64_t events = 0;          ///< read
-  std::uint64_t flicker_events = 0;  ///< read in flickering tiles
-  std::uint64_t replaced_by = 0;     ///< given in their place
-  double tile_ratio = 0.0;           ///< flickering tiles over all tiles, mean over time
-};
 
 /// Removes the events of lamps that flicker (twice the frequency of the mains, or a dimmer's) from a stream.
 ///
@@ -43,7 +27,6 @@ struct FlickerStatistics {
 class FlickerFilter {
  public:
   FlickerFilter(int width, int height, const FlickerOptions& options);
-  ~FlickerFilter();
 
   /// Takes the next events of the stream and replaces them by those that are ready, in order of time; maybe none.
   void Apply(EventColumns* block);
@@ -53,8 +36,35 @@ class FlickerFilter {
   FlickerStatistics statistics() const;
 
  private:
-  class Impl;
-  std::unique_ptr<Impl> impl_;
+  /// Appends what is ready of the events until the end of `events` to `out`.
+  void Filter(EventColumns&& events, EventColumns* out);
+  /// Whether anything flickers until `t`, or events of the comb are left.
+  bool AnyFlickers(TimeNs t) const;
+  void EnterSegmentOf(TimeNs t);
+  void CountEvents();
+  void AddDuration(TimeNs end);
+  /// Appends the events before `end` to `out`, in order of time.
+  void Merge(TimeNs end, EventColumns* out);
+
+  FlickerTiles tiles_;
+  bool remove_;
+  FlickerDetector detector_;
+  FlickerComb comb_;
+  std::deque<FlickerSegment> segments_;  // the present one first
+  std::deque<EventColumns> waiting_;     // blocks whose segments are not known yet
+  EventColumns passed_;                  // ordered by time
+  EventColumns replaced_;                // by the comb
+  bool has_segment_ = false;
+  TimeNs last_ = 0;  // stamp of the last event
+  TimeNs segment_begin_ = 0;
+  TimeNs segment_end_ = 0;
+  std::size_t flickering_tiles_ = 0;
+  double frequency_hz_ = 0.0;
+  std::uint64_t in_segment_ = 0;
+  FlickerStatistics statistics_;
+  double frequency_sum_ = 0.0;
+  double tile_seconds_ = 0.0;
+  double duration_s_ = 0.0;
 };
 
 }  // namespace evo::events
