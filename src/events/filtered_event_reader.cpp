@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "events/flicker/flicker_filter.hpp"
 #include "events/hot_pixel_detector.hpp"
 
 namespace evo::events {
@@ -27,7 +28,10 @@ struct FilteredEventReader::Changes {
   }
 };
 
-void Register(Parameters& parameters, EventFilterOptions& options) { Register(parameters, options.hot_pixels); }
+void Register(Parameters& parameters, EventFilterOptions& options) {
+  Register(parameters, options.hot_pixels);
+  Register(parameters, options.flicker);
+}
 
 FilteredEventReader::FilteredEventReader(std::unique_ptr<EventReader> reader, int width, int height,
                                          const EventFilterOptions& options, const IgnoredPixels& ignored)
@@ -48,6 +52,7 @@ FilteredEventReader::FilteredEventReader(std::unique_ptr<EventReader> reader, in
     ignored_[i] = kMasked;
     ++statistics_.masked_pixels;
   }
+  if (options.flicker.remove) flicker_ = std::make_unique<FlickerFilter>(width, height, options.flicker);
   if (options.hot_pixels.detect) detector_ = std::make_unique<HotPixelDetector>(width, height, options.hot_pixels);
 }
 
@@ -79,15 +84,10 @@ void FilteredEventReader::ReadAhead() {
       block = std::move(spare_.back());
       spare_.pop_back();
     }
-    if (!reader_->Next(&block)) {
-      has_ended_ = true;
-      if (detector_) detector_->Finish(&changes_->list);
-      return;
-    }
-    statistics_.events += block.size();
-    ApplyMask(&block);
-    // Here is the place of further filters: what they remove does not disturb the quiet of any pixel.
+    has_ended_ = !NextExamined(&block);
+    // What the earlier stages have removed does not disturb the quiet of any pixel.
     if (detector_) detector_->Add(block, &changes_->list);
+    if (has_ended_ && detector_) detector_->Finish(&changes_->list);
     if (block.empty()) {
       spare_.push_back(std::move(block));
       continue;
@@ -95,6 +95,24 @@ void FilteredEventReader::ReadAhead() {
     held_events_ += block.size();
     held_.push_back(std::move(block));
   }
+}
+
+bool FilteredEventReader::NextExamined(EventColumns* block) {
+  if (!reader_->Next(block)) {
+    block->clear();
+    if (flicker_) flicker_->Finish(block);
+    return false;
+  }
+  statistics_.events += block->size();
+  ApplyMask(block);
+  if (flicker_) flicker_->Apply(block);
+  return true;
+}
+
+FilterStatistics FilteredEventReader::statistics() const {
+  FilterStatistics statistics = statistics_;
+  if (flicker_) statistics.flicker = flicker_->statistics();
+  return statistics;
 }
 
 template <typename Rule>

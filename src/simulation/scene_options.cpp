@@ -43,7 +43,11 @@ void Register(Parameters& p, StreetOptions& o) {
   p.Add("street.night_ambient", &o.night_ambient, 0.0, 1.0, "ambient light at night over that of the day");
   p.Add("street.head_lamps", &o.head_lamps, 0.0, 1000.0,
         "radiance of a white surface 1 m ahead of the camera at night");
+  p.Add("street.lamp_intensity", &o.lamp_intensity, 0.0, 1000.0,
+        "radiance of a white surface 1 m from a street lamp that it faces");
   p.Add("street.lamp_flicker_hz", &o.lamp_flicker_hz, 0.0, 1000.0, "flicker frequency of the street lamps (Hz)");
+  p.Add("street.lamp_flicker_depth", &o.lamp_flicker_depth, 0.0, 0.99,
+        "flicker of the street lamps: amplitude over the mean light");
 }
 
 void Register(Parameters& p, VehicleOptions& o) {

@@ -21,7 +21,7 @@ namespace {
 constexpr TimeNs kMicrosecond = 1000;
 constexpr TimeNs kBatch = 10'000'000;      // 10 ms: visible sets and image speeds are found once per batch
 constexpr int kMaxRendersPerBatch = 1000;  // of a tile: 10 us, far below any sensor's time constant
-constexpr double kStepsPerFlicker = 8.0;   // of the sensor per period of the lamps: its low-pass sees a sine
+constexpr double kStepsPerFlicker = 8.0;   // of the sensor per period of lamps of depth 0.5: its low-pass sees a sine
 
 /// Times k / rate in whole microseconds, from 0.
 class Schedule {
@@ -122,7 +122,9 @@ class Simulation {
     const Renderer::Radiance& last = state->radiance;
     if (!last.has_lamps && !next.has_lamps) return sensor_.Advance(state->tile, to, next.steady, &state->events);
     const Lighting& lighting = run_.scene->lighting;
-    const double needed = ToSeconds(to - from) * lighting.flicker_hz * kStepsPerFlicker;
+    // The width of the minimum of log radiance is proportional to sqrt(1 - depth).
+    const double steps_per_flicker = kStepsPerFlicker * std::sqrt(0.5 / (1.0 - std::max(lighting.flicker_depth, 0.5)));
+    const double needed = ToSeconds(to - from) * lighting.flicker_hz * steps_per_flicker;
     const auto steps = std::max<TimeNs>(1, static_cast<TimeNs>(std::ceil(needed)));
     std::vector<float> radiance(next.steady.size());
     for (TimeNs k = 1; k <= steps; ++k) {

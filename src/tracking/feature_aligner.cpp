@@ -109,8 +109,7 @@ bool FeatureAligner::Fit(const TrackedFeature& feature, Association association,
   const AlignmentQuality quality = align(bias, options_.iterations, true);
   alignment->log_likelihood_ratio = MeanLogLikelihoodRatio(alignment->events, table, histogram.planes(), motion);
   alignment->outlier_ratio = 1.0 - quality.inlier_ratio;
-  return alignment->log_likelihood_ratio >= options_.min_log_likelihood_ratio &&
-         IsPlausible(quality, feature, motion);
+  return alignment->log_likelihood_ratio >= options_.min_log_likelihood_ratio && IsPlausible(quality, feature, motion);
 }
 
 bool FeatureAligner::IsPlausible(const AlignmentQuality& quality, const TrackedFeature& feature,

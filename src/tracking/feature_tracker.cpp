@@ -100,8 +100,8 @@ void FeatureTracker::GateInnovations() {
   for (std::size_t i = 0; i < features_.size(); ++i) {
     FeatureAlignment& alignment = alignments_[i];
     if (!alignment.is_aligned() || alignment.aligned.offset.norm() <= max_innovation_px) continue;
-    alignment.state = aligner_.MayRest(features_[i], alignment) ? FeatureAlignment::State::kResting
-                                                                : FeatureAlignment::State::kLost;
+    alignment.state =
+        aligner_.MayRest(features_[i], alignment) ? FeatureAlignment::State::kResting : FeatureAlignment::State::kLost;
   }
 }
 

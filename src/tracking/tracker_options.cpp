@@ -67,7 +67,8 @@ void RegisterLoss(Parameters& parameters, TrackerOptions& o) {
   parameters.Add("tracker.min_inlier_ratio", &o.min_inlier_ratio, 0.0, 1.0,
                  "minimum ratio of a window's events that the template explains");
   parameters.Add("tracker.min_log_likelihood_ratio", &o.min_log_likelihood_ratio, -10.0, 10.0,
-                 "minimum log likelihood ratio of the template against noise, of a window and over the last windows (nats an event)");
+                 "minimum log likelihood ratio of the template against noise, of a window and over the last windows "
+                 "(nats an event)");
   parameters.Add("tracker.max_residual_px", &o.max_residual_px, 0.1, 20.0,
                  "maximum root mean square residual of an alignment (px)");
   parameters.Add("tracker.max_prediction_error_px", &o.max_prediction_error_px, 0.5, 50.0,

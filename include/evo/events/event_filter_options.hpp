@@ -1,6 +1,7 @@
 #pragma once
 
 #include "evo/core/parameters.hpp"
+#include "evo/events/flicker.hpp"
 #include "evo/events/hot_pixels.hpp"
 
 namespace evo::events {
@@ -8,6 +9,7 @@ namespace evo::events {
 /// The filters between the recording and all that reads its events.
 struct EventFilterOptions {
   HotPixelOptions hot_pixels;
+  FlickerOptions flicker;
 };
 
 /// Adds `events.*`.

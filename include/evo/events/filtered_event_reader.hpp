@@ -11,6 +11,7 @@
 
 namespace evo::events {
 
+class FlickerFilter;
 class HotPixelDetector;
 
 /// Pixels whose events are left out from the start.
@@ -25,11 +26,13 @@ struct FilterStatistics {
   std::size_t masked_pixels = 0;    ///< of the mask
   std::uint64_t masked_events = 0;  ///< left out
   std::uint64_t hot_events = 0;     ///< left out
+  FlickerStatistics flicker;
 };
 
 /// A stream without the events of masked and of hot pixels. The stages, in this order:
 /// 1. mask and known hot pixels;
-/// 2. hot pixels found in the stream itself, some time ahead of the reader, so that they are gone from the first event
+/// 2. flicker of lamps (see FlickerFilter), which replaces events;
+/// 3. hot pixels found in the stream itself, some time ahead of the reader, so that they are gone from the first event
 ///    on (see HotPixelDetector). The blocks in between are held, at most `kMaxHeldEvents` events.
 /// The same events arrive in whichever blocks the recording delivers them.
 class FilteredEventReader : public EventReader {
@@ -46,7 +49,7 @@ class FilteredEventReader : public EventReader {
   TimeNs last_stamp() const override { return reader_->last_stamp(); }
   double progress() const override { return reader_->progress(); }
 
-  const FilterStatistics& statistics() const { return statistics_; }
+  FilterStatistics statistics() const;
   /// The pixels left out as hot, known ones first, then in the order in which they were found.
   const std::vector<HotPixel>& hot_pixels() const { return hot_; }
 
@@ -55,6 +58,9 @@ class FilteredEventReader : public EventReader {
 
   /// Reads and examines blocks until all changes within the first held one are known.
   void ReadAhead();
+  /// Takes the next events of the recording, replaces them by those that have passed the first stages, maybe none, and
+  /// returns false at the end of the recording.
+  bool NextExamined(EventColumns* block);
   /// Removes the events of ignored pixels.
   void ApplyMask(EventColumns* block);
   /// Removes the events of pixels that were found hot.
@@ -75,6 +81,7 @@ class FilteredEventReader : public EventReader {
   std::size_t hot_pixels_ = 0;            // in is_hot_
   std::vector<std::uint32_t> hot_place_;  // by pixel: place in hot_ plus one
   std::vector<HotPixel> hot_;             // in the order in which they became so
+  std::unique_ptr<FlickerFilter> flicker_;
   std::unique_ptr<HotPixelDetector> detector_;
   std::unique_ptr<Changes> changes_;  // not applied yet
   std::deque<EventColumns> held_;

@@ -35,7 +35,9 @@ struct StreetOptions {
   double dusk_ambient = 0.15;
   double night_ambient = 0.02;
   double head_lamps = 12.0;
+  double lamp_intensity = 6.0;  // radiance 0.12 of a white road below it
   double lamp_flicker_hz = 120.0;
+  double lamp_flicker_depth = 0.5;
 };
 
 /// Names motion.vehicle.*.

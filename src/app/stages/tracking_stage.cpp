@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <span>
@@ -14,6 +15,7 @@
 #include "evo/core/error.hpp"
 #include "evo/core/output_file.hpp"
 #include "evo/core/progress.hpp"
+#include "evo/events/flicker.hpp"
 #include "evo/io/pixel_files.hpp"
 #include "evo/report/evaluation_tables.hpp"
 #include "evo/report/figures.hpp"
@@ -85,10 +87,23 @@ void RecordCounts(const TrackingOutcome& outcome, StageRun* run) {
   record.AddCount("masked_events", filters.masked_events);
   record.AddCount("hot_pixels", hot_pixels);
   record.AddCount("hot_events", filters.hot_events);
+  record.AddCount("flicker_hz", static_cast<std::size_t>(std::lround(filters.flicker.frequency_hz)));
+  record.AddCount("flicker_events", filters.flicker.flicker_events);
+  record.AddCount("flicker_replaced_by", filters.flicker.replaced_by);
   record.AddCount("event_frames", result.frames.size());
   record.AddCount("event_key_frames", result.key_frames);
   record.AddCount("tracks", static_cast<std::size_t>(lifetimes.tracks + lifetimes.tracks_too_short));
   record.AddCount("track_observations", observations);
+}
+
+std::string FormatFlicker(const events::FlickerStatistics& flicker) {
+  if (flicker.flicker_events == 0) return {};
+  const auto ratio = [](std::uint64_t part, std::uint64_t all) {
+    return 100.0 * static_cast<double>(part) / static_cast<double>(all);
+  };
+  return fmt::format("flicker    {:.1f} Hz, {:.2f} % of the events, replaced by {:.1f} % of them\n",
+                     flicker.frequency_hz, ratio(flicker.flicker_events, flicker.events),
+                     ratio(flicker.replaced_by, flicker.flicker_events));
 }
 
 /// What the filters left out; empty if nothing.
@@ -105,7 +120,7 @@ std::string FormatFilters(const TrackingOutcome& outcome) {
   if (outcome.hot_pixels > 0) {
     text += fmt::format("hot pixels {}, {:.2f} % of the events\n", outcome.hot_pixels, percent(filters.hot_events));
   }
-  return text;
+  return text + FormatFlicker(filters.flicker);
 }
 
 }  // namespace

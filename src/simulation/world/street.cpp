@@ -32,6 +32,7 @@ Lighting StreetLighting(const StreetOptions& options) {
   lighting.sky = dusk ? lighting.sky * options.dusk_ambient : kNightSky;
   lighting.head_lamps = options.head_lamps;
   lighting.flicker_hz = options.lamp_flicker_hz;
+  lighting.flicker_depth = options.lamp_flicker_depth;
   return lighting;
 }
 

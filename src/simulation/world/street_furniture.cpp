@@ -14,7 +14,6 @@ constexpr std::uint64_t kPoleStream = 0x706F6C65;  // "pole"
 constexpr double kCanopyHeight = 4.6;              // m of trunk below a crown that hangs over the road
 constexpr double kLampHeight = 7.0;                // m
 constexpr double kLampReach = 2.2;                 // m over the road
-constexpr double kLampIntensity = 6.0;             // Lamp::intensity: radiance 0.12 of a white road below it
 constexpr double kLampEmission = 2.0;              // radiance
 const Eigen::Vector3d kUp(0.0, -1.0, 0.0);
 
@@ -107,7 +106,7 @@ void AddPoles(const StreetContext& context) {
     Material lamp = builder.WholeTexture(metal);
     if (context.night) {
       lamp.emission = kLampEmission;
-      context.builder.lighting().lamps.push_back({head, kLampIntensity});
+      context.builder.lighting().lamps.push_back({head, context.options.lamp_intensity});
       if (glow >= 0) AddReflection(&builder, foot - kLampHeight * kUp + kLampReach * out, plan.Heading(s), glow);
     }
     builder.Add(head - 0.35 * out - 0.15 * forward, 0.7 * out, 0.3 * forward, lamp, -kUp);

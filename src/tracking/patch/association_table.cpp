@@ -75,8 +75,8 @@ struct ShiftModel {
   float max_shift;        // cells
 };
 
-/// Fills in one plane of a table of `side` x `side` cells. Writes up to seven cells beyond the end of a row. Returns the
-/// sum of density x weight.
+/// Fills in one plane of a table of `side` x `side` cells. Writes up to seven cells beyond the end of a row. Returns
+/// the sum of density x weight.
 EVO_HOT float TabulateAssociations(const float* density, const float* weights, int width, int side,
                                    const ShiftModel& model, float* table) {
   const auto [outlier_density, half_variance, max_shift] = model;

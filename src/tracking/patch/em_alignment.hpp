@@ -63,8 +63,8 @@ AlignmentQuality AlignToTemplate(const events::LocalEvents& events, const Associ
                                  const AlignmentOptions& options, bool with_linear, PatchMotion* motion);
 
 /// How much better the template explains the events than an even spread over its plane does, each with the outliers
-/// added: the mean of log((D + D0) / (mean D + D0)) over the events, by the weights of their cells; nats an event. It is
-/// about 0, or less, for noise.
+/// added: the mean of log((D + D0) / (mean D + D0)) over the events, by the weights of their cells; nats an event. It
+/// is about 0, or less, for noise.
 double MeanLogLikelihoodRatio(const events::LocalEvents& events, const AssociationTable& table, int planes,
                               const PatchMotion& motion);
 

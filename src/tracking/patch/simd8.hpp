@@ -50,7 +50,9 @@ EVO_INLINE void Log(const F32x8& x, F32x8* logarithm) {
   std::memcpy(&mantissa, &bits, sizeof(mantissa));
   // The polynomial of degree 4 that deviates least from the base-2 logarithm at its Chebyshev nodes.
   const F32x8 log2 =
-      exponent + ((((-0.0784406762f * mantissa + 0.626032182f) * mantissa + -2.07833517f) * mantissa + 4.02921139f) * mantissa + -2.49835315f);
+      exponent +
+      ((((-0.0784406762f * mantissa + 0.626032182f) * mantissa + -2.07833517f) * mantissa + 4.02921139f) * mantissa +
+       -2.49835315f);
   *logarithm = 0.69314718f * log2;
 }
 
