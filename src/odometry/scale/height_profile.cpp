@@ -17,7 +17,7 @@ namespace {
 constexpr double kMaxRelativeSigma = 0.1;  // a track less certain than this says nothing of the height
 constexpr double kRoughness = 0.01;        // of the ground, in heights
 // Relative error of the height that all tracks within an arc of one height have in common: a car rocks on its springs.
-constexpr double kRocking = 0.015;
+constexpr double kRocking = 0.005;
 constexpr double kRollSigma = 0.05;     // rad, prior
 constexpr double kBreakSigma = 0.3;     // relative change of the scale where it was lost
 constexpr double kMadToSigma = 1.4826;  // median absolute deviation of a Gaussian to its standard deviation
