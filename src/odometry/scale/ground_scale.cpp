@@ -17,11 +17,11 @@ namespace evo::odometry {
 
 namespace {
 
-constexpr double kInitialWindow = 0.1;        // over the typical distance of the tracks, before the height is known
-constexpr double kWindow = 3.0;               // heights to either side that the path is smoothed over
-constexpr double kDriftWindow = 8.0;          // heights that the scale is averaged over to measure its drift
-constexpr double kDriftOverCovariance = 0.5;  // measured: the covariance is inflated for errors of the rotation
-constexpr double kUnknownScaleDrift = 0.002;  // over a path of one height, without a covariance of the poses
+constexpr double kInitialWindow = 0.1;         // over the typical distance of the tracks, before the height is known
+constexpr double kWindow = 3.0;                // heights to either side that the path is smoothed over
+constexpr double kDriftWindow = 8.0;           // heights that the scale is averaged over to measure its drift
+constexpr double kDriftOverCovariance = 0.45;  // measured: near that of the covariance before its inflation
+constexpr double kUnknownScaleDrift = 0.002;   // over a path of one height, without a covariance of the poses
 constexpr double kMaxDistance = 40.0;  // heights of arc length from the camera that observes a track to the track
 
 /// All poses of a run in order of time.

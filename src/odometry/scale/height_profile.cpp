@@ -17,7 +17,7 @@ namespace {
 constexpr double kMaxRelativeSigma = 0.1;  // a track less certain than this says nothing of the height
 constexpr double kRoughness = 0.01;        // of the ground, in heights
 // Relative error of the height that all tracks within an arc of one height have in common: a car rocks on its springs.
-constexpr double kRocking = 0.015;
+constexpr double kRocking = 0.005;
 constexpr double kRollSigma = 0.05;     // rad, prior
 constexpr double kBreakSigma = 0.3;     // relative change of the scale where it was lost
 constexpr double kMadToSigma = 1.4826;  // median absolute deviation of a Gaussian to its standard deviation
@@ -30,7 +30,9 @@ constexpr std::size_t kMinTracks = 20;
 constexpr std::size_t kSectionNodes = 5;  // nodes (heights of arc length) to a section of the search
 constexpr double kMinEvidence = 10.0;     // without a ground, the best of all heights and rolls reaches about 4
 constexpr double kMinSeenRatio = 0.5;     // of the path, in sections with tracks on the ground
-constexpr double kCoveredSigma = 0.01;    // relative, where the height counts as known
+// Beyond it the height is not constant; bumps and a car that rocks on its springs make up to 0.01.
+constexpr double kMaxCommonSigma = 0.015;
+constexpr double kCoveredSigma = 0.01;  // relative, where the height counts as known
 
 /// A place between two nodes.
 struct NodeFraction {
@@ -74,11 +76,12 @@ class HeightProfileFitter {
     const HeightProfileQuality& quality = profile_.quality;
     spdlog::debug(
         "odometry: {} of {} tracks below the path lie on the ground, evidence {:.1f}, noise factor {:.2f}, "
-        "roll {:.4f} rad, on {:.0f} % of the path, {:.0f} % covered, uncertain by {:.2f} %",
+        "roll {:.4f} rad, {:.2f} % in common, on {:.0f} % of the path, {:.0f} % covered, uncertain by {:.2f} %",
         quality.inliers, observations_.size(), quality.evidence, noise_factor_, Median(profile_.rolls),
-        100.0 * SeenRatio(), 100.0 * quality.covered_ratio, 100.0 * quality.relative_sigma);
+        100.0 * CommonSigma(), 100.0 * SeenRatio(), 100.0 * quality.covered_ratio, 100.0 * quality.relative_sigma);
     const bool found = quality.inliers >= kMinTracks && quality.evidence >= kMinEvidence &&
-                       noise_factor_ < kMaxNoiseFactor && SeenRatio() >= kMinSeenRatio;
+                       noise_factor_ < kMaxNoiseFactor && CommonSigma() < kMaxCommonSigma &&
+                       SeenRatio() >= kMinSeenRatio;
     return found ? std::optional(profile_) : std::nullopt;
   }
 
@@ -191,6 +194,28 @@ class HeightProfileFitter {
       if (ground_probabilities_[i] > 0.5) seen[LocateNode(observations_[i].arc_length).node / kSectionNodes] = true;
     }
     return static_cast<double>(std::ranges::count(seen, true)) / static_cast<double>(seen.size());
+  }
+
+  /// Relative standard deviation of the height that the tracks on the ground within an arc of one height have in
+  /// common, beyond their own noise.
+  double CommonSigma() const {
+    std::vector<double> weights(profile_.inverse_heights.size());
+    std::vector<double> sums(weights.size());
+    for (std::size_t i = 0; i < observations_.size(); ++i) {
+      if (ground_probabilities_[i] < 0.5) continue;
+      const auto [error, sigma] = Compare(observations_[i]);
+      const std::size_t node = NearestNode(observations_[i]);
+      weights[node] += 1.0 / (sigma * sigma);
+      sums[node] += error / (sigma * sigma);
+    }
+    double excess = 0.0;
+    double total = 0.0;
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+      if (!(weights[k] > 0.0)) continue;
+      excess += sums[k] * sums[k] / weights[k] - 1.0;  // weighted by the certainty of the node's mean
+      total += weights[k];
+    }
+    return total > 0.0 ? std::sqrt(std::max(0.0, excess / total)) : 0.0;
   }
 
   void Summarize() {

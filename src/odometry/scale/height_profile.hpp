@@ -36,9 +36,9 @@ struct HeightProfile {
 
 /// Fits the ground that explains the observations best: a random walk of height and roll along the path, where an
 /// observation lies on the ground or, with a density learned from all of them, off it, which is mostly above. Empty if
-/// there are too few observations on it, if they scatter far more than their noise explains, if the likelihood is
-/// hardly higher than without a ground or if it is known on less than half the path: then there is no ground, or the
-/// height is not constant.
+/// there are too few observations on it, if they scatter far more than their noise explains, if neighbours err alike,
+/// if the likelihood is hardly higher than without a ground or if there are observations on less than half the path:
+/// then there is no ground, or the height is not constant.
 std::optional<HeightProfile> FitHeightProfile(const HeightProfileOptions& options,
                                               const std::vector<GroundObservation>& observations);
 
