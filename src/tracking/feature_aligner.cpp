@@ -55,9 +55,11 @@ void FeatureAligner::Predict(const TrackedFeature& feature, double step_s, const
   alignment->predicted_position = state.position + 0.5 * step_s * (flow + motion.flow);
 
   alignment->J_pixel_rotation = ego_motion_.jacobians().Lookup(alignment->predicted_position).J_pixel_rotation;
-  alignment->flow_sigma_px_s = ego_motion_.jacobians().focal_px() * ego_motion_.typical_angular_acceleration() * step_s;
   alignment->predicted_position += alignment->J_pixel_rotation * correction.rotation;
   motion.flow += alignment->J_pixel_rotation * correction.angular_velocity;
+  const double flow_sigma_px_s =
+      ego_motion_.jacobians().focal_px() * ego_motion_.typical_angular_acceleration() * step_s;
+  feature.event_template.FindFlips(VelocityInTemplate(motion), flow_sigma_px_s, &alignment->flips);
 }
 
 bool FeatureAligner::GatherEvents(const events::EventHistory& history, TimeNs t, const TrackedFeature& feature,
@@ -82,10 +84,12 @@ bool FeatureAligner::GatherEvents(const events::EventHistory& history, TimeNs t,
 
 bool FeatureAligner::Fit(const TrackedFeature& feature, Association association, FeatureAlignment* alignment) const {
   thread_local std::optional<EventHistogram> flipped;
-  if (!flipped) flipped.emplace(feature.event_template.histogram());
-  const bool has_flipped = feature.event_template.PredictPolarities(VelocityInTemplate(alignment->predicted),
-                                                                    alignment->flow_sigma_px_s, &*flipped);
-  const EventHistogram& histogram = has_flipped ? *flipped : feature.event_template.histogram();
+  const bool has_flips = alignment->flips.any();
+  if (has_flips) {
+    flipped = feature.event_template.histogram();
+    alignment->flips.Apply(&*flipped);
+  }
+  const EventHistogram& histogram = has_flips ? *flipped : feature.event_template.histogram();
   const auto radius = static_cast<double>(options_.patch_radius_px);
   PatchMotion& motion = alignment->aligned;
   motion = alignment->predicted;
@@ -103,9 +107,9 @@ bool FeatureAligner::Fit(const TrackedFeature& feature, Association association,
   }
   table.Build(histogram, options_.fine_sigma_px, options_.outlier_density_ratio);
   const auto& known_bias = feature.event_template.self_bias();
-  const SelfBias bias = known_bias && !has_flipped ? *known_bias : self_bias();
+  const SelfBias bias = known_bias && !has_flips ? *known_bias : self_bias();
   alignment->self_bias.reset();
-  if (!has_flipped) alignment->self_bias = bias;
+  if (!has_flips) alignment->self_bias = bias;
   const AlignmentQuality quality = align(bias, options_.iterations, true);
   alignment->log_likelihood_ratio = MeanLogLikelihoodRatio(alignment->events, table, histogram.planes(), motion);
   alignment->outlier_ratio = 1.0 - quality.inlier_ratio;

@@ -9,6 +9,7 @@
 #include "tracking/motion/ego_motion.hpp"
 #include "tracking/motion/rotation_correction.hpp"
 #include "tracking/patch/em_alignment.hpp"
+#include "tracking/patch/polarity_flips.hpp"
 #include "tracking/tracked_feature.hpp"
 
 namespace evo::tracking {
@@ -30,7 +31,7 @@ struct FeatureAlignment {
   events::LocalEvents events;
   double outlier_ratio = 0.0;         ///< mean probability that an event does not belong to the template
   double log_likelihood_ratio = 0.0;  ///< of the template, see MeanLogLikelihoodRatio
-  double flow_sigma_px_s = 0.0;       ///< standard deviation of the predicted flow
+  PolarityFlips flips;                ///< of the predicted motion against the template
   std::optional<SelfBias> self_bias;  ///< of the template, see AssociationTable; empty if its polarities have flipped
 
   bool is_aligned() const { return state == State::kAligned; }

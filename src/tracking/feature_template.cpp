@@ -16,17 +16,6 @@ constexpr double kMaxScaleChange = 1.25;
 // or when the depth varies by this ratio from its centre to its edge: cells of 1 px would alias or blur the pattern.
 constexpr double kMaxPerspective = 0.25;
 
-/// Writes the probabilities that polarities flip between two velocities. False if none does.
-bool FindFlips(const EventHistogram& histogram, const TemplateVelocity& reference, const TemplateVelocity& present,
-               double sigma_px_s, PolarityFlips* flips) {
-  if (histogram.planes() != 2 || !PolarityFlips::MayOccur(reference, present, sigma_px_s, histogram.radius())) {
-    return false;
-  }
-  flips->FindEdges(histogram);
-  flips->Update(reference, present, sigma_px_s);
-  return true;
-}
-
 }  // namespace
 
 FeatureTemplate::FeatureTemplate(EventHistogram first_window, const TemplateVelocity& velocity)
@@ -34,13 +23,8 @@ FeatureTemplate::FeatureTemplate(EventHistogram first_window, const TemplateVelo
   histogram_.Scale(static_cast<float>(1.0 / histogram_.Total()));
 }
 
-bool FeatureTemplate::PredictPolarities(const TemplateVelocity& velocity, double sigma_px_s,
-                                        EventHistogram* predicted) const {
-  thread_local PolarityFlips flips;
-  if (!FindFlips(histogram_, velocity_, velocity, sigma_px_s, &flips)) return false;
-  *predicted = histogram_;
-  flips.Apply(predicted);
-  return true;
+void FeatureTemplate::FindFlips(const TemplateVelocity& velocity, double sigma_px_s, PolarityFlips* flips) const {
+  flips->Update(histogram_, {velocity_, velocity, sigma_px_s});
 }
 
 void FeatureTemplate::Learn(const AlignedWindow& window, const TrackerOptions& options, PatchShape* shape) {
@@ -55,15 +39,12 @@ void FeatureTemplate::Learn(const AlignedWindow& window, const TrackerOptions& o
 
 void FeatureTemplate::Blend(const AlignedWindow& window, double gain) {
   thread_local std::optional<EventHistogram> histogram;
-  thread_local PolarityFlips flips;
   if (!histogram || histogram->side() != histogram_.side() || histogram->planes() != histogram_.planes()) {
     histogram.emplace(histogram_.radius(), histogram_.planes());
   }
   histogram->Clear();
   Accumulate(window.events, window.motion, &*histogram);
-  if (FindFlips(histogram_, velocity_, VelocityInTemplate(window.motion), window.velocity_sigma_px_s, &flips)) {
-    flips.Apply(&*histogram);
-  }
+  window.flips.Apply(&*histogram);
   // Windows have equal weights, however many events they hold.
   const double factor = gain / std::max(1.0, histogram->Total());
   histogram_.Blend(static_cast<float>(1.0 - gain), *histogram, static_cast<float>(factor));

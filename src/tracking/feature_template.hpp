@@ -24,7 +24,7 @@ struct AlignedWindow {
   const events::LocalEvents& events;
   const PatchMotion& motion;
   TimeNs half;                 ///< of the window
-  double velocity_sigma_px_s;  ///< standard deviation of the motion's velocity
+  const PolarityFlips& flips;  ///< against the template
 };
 
 /// The pattern of a feature: the events of its windows so far, in template coordinates.
@@ -35,9 +35,8 @@ class FeatureTemplate {
 
   /// Of total 1, however many events the windows held, with the polarities of the first window's velocity.
   const EventHistogram& histogram() const { return histogram_; }
-  /// Writes the histogram with the polarities of another velocity to `predicted`. False if they are the same ones:
-  /// then it writes nothing.
-  bool PredictPolarities(const TemplateVelocity& velocity, double sigma_px_s, EventHistogram* predicted) const;
+  /// Finds the polarities that another velocity flips.
+  void FindFlips(const TemplateVelocity& velocity, double sigma_px_s, PolarityFlips* flips) const;
   /// Scale of the template's coordinates relative to the first window.
   double scale() const { return scale_; }
 

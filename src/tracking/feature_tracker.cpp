@@ -178,7 +178,7 @@ void FeatureTracker::AdvanceFeature(const FeatureAlignment& alignment, TrackedFe
   feature->surface.CorrectGradient(ego_motion_.EstimateInverseDepthGradient(state.position, shape_rate),
                                    state.flow.norm());
   if (alignment.self_bias) feature->event_template.set_self_bias(*alignment.self_bias);
-  feature->event_template.Learn({alignment.events, motion, alignment.half_window, alignment.flow_sigma_px_s}, options_,
+  feature->event_template.Learn({alignment.events, motion, alignment.half_window, alignment.flips}, options_,
                                 &state.shape);
 }
 

@@ -34,7 +34,7 @@ void Learn(FeatureTemplate* model, double elapsed_s, PatchShape* shape) {
   model->AddTime(elapsed_s);
   PatchMotion motion;
   motion.linear = shape->linear;
-  model->Learn({EventsAt(2.0f, 0.0f, 100), motion, kHalfWindow, 0.0}, options, shape);
+  model->Learn({EventsAt(2.0f, 0.0f, 100), motion, kHalfWindow, PolarityFlips()}, options, shape);
 }
 
 TEST(FeatureTemplate, WeighsWindowsEquallyHoweverManyEventsTheyHold) {

@@ -31,8 +31,7 @@ double FlippedRatio(double normal_angle, const TemplateVelocity& from, const Tem
                     double sigma_px_s = 0.0) {
   EventHistogram histogram = EdgeHistogram(normal_angle);
   PolarityFlips flips;
-  flips.FindEdges(histogram);
-  flips.Update(from, to, sigma_px_s);
+  flips.Update(histogram, {from, to, sigma_px_s});
   flips.Apply(&histogram);
   double negative = 0.0;
   for (int i = 0; i < histogram.side() * histogram.side(); ++i) negative += histogram.plane(1)[i];
@@ -70,11 +69,18 @@ TEST(PolarityFlips, AnUncertainVelocityTellsNothing) {
   EXPECT_NEAR(FlippedRatio(0.3, Translation(0.3), Translation(0.3, 1.0), 50.0), 0.5, 0.05);
 }
 
-TEST(PolarityFlips, MayOccurOnlyInATurnOrAnUncertainMotion) {
-  EXPECT_FALSE(PolarityFlips::MayOccur(Translation(1.0), Translation(1.1), 1.0, kRadius));
-  EXPECT_TRUE(PolarityFlips::MayOccur(Translation(1.0), Translation(1.3), 1.0, kRadius));
-  EXPECT_TRUE(PolarityFlips::MayOccur(Translation(1.0), Translation(1.0 + M_PI), 1.0, kRadius));
-  EXPECT_TRUE(PolarityFlips::MayOccur(Translation(1.0), Translation(1.0, 3.0), 1.0, kRadius));
+TEST(PolarityFlips, OccurOnlyInATurnOrAnUncertainMotion) {
+  const EventHistogram histogram = EdgeHistogram(0.3);
+  PolarityFlips flips;
+  const auto any = [&](const TemplateVelocity& present) {
+    flips.Update(histogram, {Translation(1.0), present, 1.0});
+    return flips.any();
+  };
+  EXPECT_FALSE(any(Translation(1.0)));
+  EXPECT_FALSE(any(Translation(1.3)));
+  EXPECT_TRUE(any(Translation(1.5)));
+  EXPECT_TRUE(any(Translation(1.0 + M_PI)));
+  EXPECT_TRUE(any(Translation(1.0, 2.5)));
 }
 
 TEST(PolarityFlips, ASteadyRotationAboutThePatchFlipsNothing) {
@@ -89,8 +95,8 @@ TEST(PolarityFlips, ASteadyRotationAboutThePatchFlipsNothing) {
 TEST(PolarityFlips, AnEmptyHistogramStaysEmpty) {
   EventHistogram histogram(kRadius, 2);
   PolarityFlips flips;
-  flips.FindEdges(histogram);
-  flips.Update(Translation(0.0, 0.0), Translation(0.0, 0.0), 0.0);
+  flips.Update(histogram, {Translation(0.0, 0.0), Translation(0.0, 0.0), 1.0});
+  EXPECT_TRUE(flips.any());
   flips.Apply(&histogram);
   for (int i = 0; i < 2 * histogram.side() * histogram.side(); ++i) EXPECT_EQ(histogram.plane(0)[i], 0.0f);
 }

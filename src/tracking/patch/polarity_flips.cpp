@@ -18,18 +18,75 @@ constexpr float kNormalSigma = 0.25f;     // rad, of an edge's normal from the e
 // A turn by d sweeps over an edge with a probability of at most d times the density of the normal's angle; d is about
 // 2 sin(d / 2).
 constexpr float kSweepGain = 0.8f / kNormalSigma;
-constexpr double kMinTurnSine = 0.17;      // of a turn that may flip an edge: 10 degrees
-constexpr double kMinSpeedSigmas = 4.0;    // a faster motion has a certain direction
+constexpr double kMinTurnSine = 0.42;      // of a turn that flips more than a few edges: 25 degrees
+constexpr double kMinSpeedSigmas = 3.0;    // a faster motion has a certain direction
+constexpr float kMinTensor = 1e-30f;        // guards a division
 constexpr float kMinSquaredSpeed = 1e-6f;  // px^2/s^2, guards a division
 
-/// Smooth sign: x / sqrt(x^2 + sigma^2).
-inline float SoftSign(float x, float sigma) { return x / std::sqrt(x * x + sigma * sigma); }
+/// Velocities of a row of cells: (x, y) + column * (x_step, y_step), px/s.
+struct RowVelocity {
+  float x, y, x_step, y_step;
+};
+
+EVO_HOT void FindFlipProbabilities(const RowVelocity& before, const RowVelocity& now, float sigma,
+                                   const float* normal_x, const float* normal_y, int cells, float* probability) {
+  const float squared_sigma = sigma * sigma + kMinSquaredSpeed;
+  constexpr float kSquaredNormalSigma = kNormalSigma * kNormalSigma;
+  // The compiler vectorises this loop.
+  for (int c = 0; c < cells; ++c) {
+    const auto column = static_cast<float>(c);
+    const float before_x = before.x + column * before.x_step;
+    const float before_y = before.y + column * before.y_step;
+    const float now_x = now.x + column * now.x_step;
+    const float now_y = now.y + column * now.y_step;
+    const float squared_before = before_x * before_x + before_y * before_y + kMinSquaredSpeed;
+    const float squared_now = now_x * now_x + now_y * now_y + kMinSquaredSpeed;
+    const float across_before = normal_x[c] * before_x + normal_y[c] * before_y;
+    const float across_now = normal_x[c] * now_x + normal_y[c] * now_y;
+    const float squared_across = across_now * across_now;
+    const float cosine = (before_x * now_x + before_y * now_y) / std::sqrt(squared_before * squared_now);
+    const float same = across_before * across_now /
+                       std::sqrt((across_before * across_before + kSquaredNormalSigma * squared_before) *
+                                 (squared_across + kSquaredNormalSigma * squared_now));
+    const float most = kSweepGain * std::sqrt(std::max(0.0f, 0.5f - 0.5f * cosine));
+    const float least = 1.0f - kSweepGain * std::sqrt(std::max(0.0f, 0.5f + 0.5f * cosine));
+    const float flip = std::max(std::min(0.5f - 0.5f * same, most), least);
+    // The error of the velocity may flip it, too.
+    const float certain = std::sqrt(squared_across / (squared_across + squared_sigma));
+    probability[c] = 0.5f + certain * (flip - 0.5f);
+  }
+}
 
 double SineOfTurn(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   const double norms = a.norm() * b.norm();
   if (!(norms > 0.0)) return 1.0;
   if (a.dot(b) < 0.0) return 1.0;
   return std::abs(a.x() * b.y() - a.y() * b.x()) / norms;
+}
+
+bool MayFlip(const PolarityFlips::Turn& turn, double radius_px) {
+  for (const double x : {-radius_px, radius_px}) {
+    for (const double y : {-radius_px, radius_px}) {
+      const Eigen::Vector2d u(x, y);
+      const Eigen::Vector2d before = turn.reference.at_centre + turn.reference.rate * u;
+      const Eigen::Vector2d now = turn.present.at_centre + turn.present.rate * u;
+      if (now.norm() < kMinSpeedSigmas * turn.sigma_px_s || SineOfTurn(before, now) > kMinTurnSine) return true;
+    }
+  }
+  return false;
+}
+
+/// The normals of edges by the structure tensor (xx, xy, yy): the eigenvector of its larger eigenvalue, by the half-angle
+/// formulas.
+EVO_HOT void FindNormals(const float* xx, const float* xy, const float* yy, int cells, float* normal_x,
+                         float* normal_y) {
+  for (int c = 0; c < cells; ++c) {
+    const float difference = xx[c] - yy[c];
+    const float cosine = difference / std::sqrt(difference * difference + 4.0f * xy[c] * xy[c] + kMinTensor);
+    const float sine = std::sqrt(std::max(0.0f, 0.5f - 0.5f * cosine));
+    normal_x[c] = std::sqrt(std::max(0.0f, 0.5f + 0.5f * cosine));
+    normal_y[c] = xy[c] < 0.0f ? -sine : sine;
+  }
 }
 
 }  // namespace
@@ -42,17 +99,11 @@ TemplateVelocity VelocityInTemplate(const PatchMotion& motion) {
   return TemplateVelocity{motion.flow, motion.linear_rate}.Transformed(motion.linear.inverse());
 }
 
-bool PolarityFlips::MayOccur(const TemplateVelocity& reference, const TemplateVelocity& present, double sigma_px_s,
-                             double radius_px) {
-  for (const double x : {-radius_px, radius_px}) {
-    for (const double y : {-radius_px, radius_px}) {
-      const Eigen::Vector2d u(x, y);
-      const Eigen::Vector2d before = reference.at_centre + reference.rate * u;
-      const Eigen::Vector2d now = present.at_centre + present.rate * u;
-      if (now.norm() < kMinSpeedSigmas * sigma_px_s || SineOfTurn(before, now) > kMinTurnSine) return true;
-    }
-  }
-  return false;
+void PolarityFlips::Update(const EventHistogram& histogram, const Turn& turn) {
+  any_ = histogram.planes() == 2 && MayFlip(turn, histogram.radius());
+  if (!any_) return;
+  FindEdges(histogram);
+  FindProbabilities(turn);
 }
 
 void PolarityFlips::FindEdges(const EventHistogram& histogram) {
@@ -94,53 +145,30 @@ void PolarityFlips::FindEdges(const EventHistogram& histogram) {
   normal_x_.resize(count);
   normal_y_.resize(count);
   for (int r = 0; r < side_; ++r) {
-    for (int c = 0; c < side_; ++c) {
-      const std::ptrdiff_t i = first + r * width + c;
-      // The eigenvector of the larger eigenvalue, by the half-angle formulas.
-      const float difference = xx[i] - yy[i];
-      const float length = std::sqrt(difference * difference + 4.0f * xy[i] * xy[i]);
-      const float cosine = length > 0.0f ? difference / length : 1.0f;
-      const auto cell = static_cast<std::size_t>(r * side_ + c);
-      normal_x_[cell] = std::sqrt(0.5f * std::max(0.0f, 1.0f + cosine));
-      normal_y_[cell] = std::copysign(std::sqrt(0.5f * std::max(0.0f, 1.0f - cosine)), xy[i]);
-    }
+    const std::ptrdiff_t i = first + r * width;
+    FindNormals(xx.data() + i, xy.data() + i, yy.data() + i, side_, normal_x_.data() + r * side_,
+                normal_y_.data() + r * side_);
   }
 }
 
-void PolarityFlips::Update(const TemplateVelocity& reference, const TemplateVelocity& present, double sigma_px_s) {
+void PolarityFlips::FindProbabilities(const Turn& turn) {
   probability_.resize(normal_x_.size());
   const int radius = side_ / 2;
-  const Eigen::Matrix2f before_rate = reference.rate.cast<float>();
-  const Eigen::Matrix2f now_rate = present.rate.cast<float>();
-  const Eigen::Vector2f before_centre = reference.at_centre.cast<float>();
-  const Eigen::Vector2f now_centre = present.at_centre.cast<float>();
-  const auto sigma = static_cast<float>(sigma_px_s);
+  const auto row_of = [&](const TemplateVelocity& velocity, int v) -> RowVelocity {
+    const Eigen::Vector2f first =
+        (velocity.at_centre + velocity.rate * Eigen::Vector2d(-radius, v)).cast<float>();
+    return {first.x(), first.y(), static_cast<float>(velocity.rate(0, 0)), static_cast<float>(velocity.rate(1, 0))};
+  };
   for (int r = 0; r < side_; ++r) {
-    for (int c = 0; c < side_; ++c) {
-      const auto cell = static_cast<std::size_t>(r * side_ + c);
-      const auto x = static_cast<float>(c - radius);
-      const auto y = static_cast<float>(r - radius);
-      const float before_x = before_centre.x() + before_rate(0, 0) * x + before_rate(0, 1) * y;
-      const float before_y = before_centre.y() + before_rate(1, 0) * x + before_rate(1, 1) * y;
-      const float now_x = now_centre.x() + now_rate(0, 0) * x + now_rate(0, 1) * y;
-      const float now_y = now_centre.y() + now_rate(1, 0) * x + now_rate(1, 1) * y;
-      const float squared_before = std::max(before_x * before_x + before_y * before_y, kMinSquaredSpeed);
-      const float squared_now = std::max(now_x * now_x + now_y * now_y, kMinSquaredSpeed);
-      const float across_before = normal_x_[cell] * before_x + normal_y_[cell] * before_y;
-      const float across_now = normal_x_[cell] * now_x + normal_y_[cell] * now_y;
-      const float cosine = (before_x * now_x + before_y * now_y) / std::sqrt(squared_before * squared_now);
-      const float same = SoftSign(across_before, kNormalSigma * std::sqrt(squared_before)) *
-                         SoftSign(across_now, kNormalSigma * std::sqrt(squared_now));
-      const float most = kSweepGain * std::sqrt(0.5f * std::max(0.0f, 1.0f - cosine));
-      const float least = 1.0f - kSweepGain * std::sqrt(0.5f * std::max(0.0f, 1.0f + cosine));
-      const float flip = std::max(std::min(0.5f * (1.0f - same), most), least);
-      // The error of the velocity may flip it, too.
-      const float certain = sigma > 0.0f ? SoftSign(std::abs(across_now), sigma) : 1.0f;
-      probability_[cell] = 0.5f + certain * (flip - 0.5f);
-    }
+    const int first = r * side_;
+    FindFlipProbabilities(row_of(turn.reference, r - radius), row_of(turn.present, r - radius),
+                          static_cast<float>(turn.sigma_px_s),
+                          normal_x_.data() + first, normal_y_.data() + first, side_, probability_.data() + first);
   }
 }
 
-void PolarityFlips::Apply(EventHistogram* histogram) const { histogram->ExchangePlanes(probability_); }
+void PolarityFlips::Apply(EventHistogram* histogram) const {
+  if (any_) histogram->ExchangePlanes(probability_);
+}
 
 }  // namespace evo::tracking

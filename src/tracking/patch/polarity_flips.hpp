@@ -25,17 +25,24 @@ TemplateVelocity VelocityInTemplate(const PatchMotion& motion);
 /// histogram, from the cell's edge direction.
 class PolarityFlips {
  public:
-  /// Whether any polarity may flip between the two velocities. `sigma_px_s`: standard deviation of `present`.
-  static bool MayOccur(const TemplateVelocity& reference, const TemplateVelocity& present, double sigma_px_s,
-                       double radius_px);
+  struct Turn {
+    const TemplateVelocity& reference;
+    const TemplateVelocity& present;
+    double sigma_px_s;  ///< standard deviation of the present velocity
+  };
 
-  /// Finds the edges in the events of `histogram`, of both polarities together.
-  void FindEdges(const EventHistogram& histogram);
-  void Update(const TemplateVelocity& reference, const TemplateVelocity& present, double sigma_px_s);
+  /// Finds the edges in the events of `histogram`, of both polarities together, and which of them the turn flips.
+  void Update(const EventHistogram& histogram, const Turn& turn);
+  /// Whether any polarity may flip. None does while the motion goes on in its direction.
+  bool any() const { return any_; }
   /// Exchanges the two planes of a histogram in proportion to the probabilities.
   void Apply(EventHistogram* histogram) const;
 
  private:
+  void FindEdges(const EventHistogram& histogram);
+  void FindProbabilities(const Turn& turn);
+
+  bool any_ = false;
   int side_ = 0;
   std::vector<float> normal_x_, normal_y_;  // of the edges; of any sign
   std::vector<float> probability_;
