@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+#include <cstring>
 
 namespace evo::events {
 
@@ -14,33 +14,10 @@ constexpr std::int16_t kMaxBinSum = 1000;  // sixteen thresholds; eight bins of 
 constexpr float kMaxLogRatio = 2.0F;
 // A level that drifts, since a pixel's thresholds are not known well or its refractory period takes events, fades.
 constexpr int kFadeShift = 5;  // over 64 bins, eight periods
-// The scene's noise must not reach it, and a single threshold must.
-constexpr int kEmitQuarters = 3;
+// Of kPerPeriod times a threshold: the scene's noise must not reach it, and a single threshold must.
+constexpr int kEmit = 6;
 constexpr float kMinLearningRate = 0.02F;  // over 100 periods: an edge's events change a ratio little
 constexpr float kMinLearned = 8.0F;        // periods before a pixel's level is trusted
-
-/// One bin of a tile's pixels. Returns whether a pixel has an event.
-bool IntegratePixels(std::int16_t* __restrict present, std::int16_t* __restrict ring, std::int16_t* __restrict sum,
-                     std::int16_t* __restrict mean, std::int16_t* __restrict activity,
-                     const std::int16_t* __restrict positive_step, const std::int16_t* __restrict negative_step,
-                     int per_period) {
-  std::int16_t fires = 0;
-  const auto threshold = static_cast<std::int16_t>(per_period * kEmitQuarters / 4);
-  for (std::size_t p = 0; p < kPixels; ++p) {
-    const std::int16_t c = std::min(std::max(present[p], static_cast<std::int16_t>(-kMaxBinSum)), kMaxBinSum);
-    present[p] = 0;
-    const auto s = static_cast<std::int16_t>(sum[p] + c - ring[p]);
-    ring[p] = c;
-    sum[p] = s;
-    activity[p] = static_cast<std::int16_t>(activity[p] + (c < 0 ? -c : c));
-    auto m = static_cast<std::int16_t>(mean[p] + s);
-    m = static_cast<std::int16_t>(m - (m >> kFadeShift));
-    mean[p] = m;
-    fires = static_cast<std::int16_t>(fires | (m > static_cast<std::int16_t>(threshold * positive_step[p])) |
-                                      (m < static_cast<std::int16_t>(-threshold * negative_step[p])));
-  }
-  return fires != 0;
-}
 
 }  // namespace
 
@@ -87,14 +64,12 @@ void FlickerComb::SetLogRatio(std::size_t pixel, float log_ratio) {
 void FlickerComb::CloseBin(EventColumns* events) {
   for (const std::uint32_t tile : slots_) {
     const std::size_t first = tile * kPixels;
-    const bool fires = IntegratePixels(
-        &present_[first], &ring_[(tile * kPerPeriod + static_cast<std::size_t>(phase_)) * kPixels], &period_sum_[first],
-        &mean_[first], &activity_[first], &positive_step_[first], &negative_step_[first], kPerPeriod);
+    const bool any_fires = Integrate(tile);
     // The mean of the first period is the level from which changes count.
     if (age_[tile] <= kPerPeriod) {
       ++age_[tile];
       std::fill_n(&mean_[first], kPixels, 0);
-    } else if (fires) {
+    } else if (any_fires) {
       Emit(tile, events);
     }
     if (phase_ + 1 == kPerPeriod) LearnSteps(tile);
@@ -103,23 +78,64 @@ void FlickerComb::CloseBin(EventColumns* events) {
   bin_end_ += bin_;
 }
 
+/// Adds the present bin to the mean of a tile's pixels. Returns whether any of these has an event.
+bool FlickerComb::Integrate(std::size_t tile) {
+  const std::size_t first = tile * kPixels;
+  std::int16_t* __restrict present = &present_[first];
+  std::int16_t* __restrict ring = &ring_[(tile * kPerPeriod + static_cast<std::size_t>(phase_)) * kPixels];
+  std::int16_t* __restrict sum = &period_sum_[first];
+  std::int16_t* __restrict mean = &mean_[first];
+  std::int16_t* __restrict activity = &activity_[first];
+  std::int16_t* __restrict fires = fires_.data();
+  const std::int16_t* __restrict positive_step = &positive_step_[first];
+  const std::int16_t* __restrict negative_step = &negative_step_[first];
+  std::int16_t any_fires = 0;
+  for (std::size_t p = 0; p < kPixels; ++p) {
+    const std::int16_t c = std::min(std::max(present[p], static_cast<std::int16_t>(-kMaxBinSum)), kMaxBinSum);
+    present[p] = 0;
+    const auto s = static_cast<std::int16_t>(sum[p] + c - ring[p]);
+    ring[p] = c;
+    sum[p] = s;
+    activity[p] = static_cast<std::int16_t>(activity[p] + (c < 0 ? -c : c));
+    auto m = static_cast<std::int16_t>(mean[p] + s);
+    m = static_cast<std::int16_t>(m - (m >> kFadeShift));
+    mean[p] = m;
+    const auto fire = static_cast<std::int16_t>((m > static_cast<std::int16_t>(kEmit * positive_step[p])) |
+                                                (m < static_cast<std::int16_t>(-kEmit * negative_step[p])));
+    fires[p] = fire;
+    any_fires = static_cast<std::int16_t>(any_fires | fire);
+  }
+  return any_fires != 0;
+}
+
+/// Appends the events of the tile's pixels that have some.
 void FlickerComb::Emit(std::size_t tile, EventColumns* events) {
-  constexpr int kEmit = kPerPeriod * kEmitQuarters / 4;
+  for (std::size_t i = 0; i < kPixels; i += 4) {
+    std::uint64_t four = 0;  // most have none
+    std::memcpy(&four, &fires_[i], sizeof four);
+    if (four == 0) continue;
+    for (std::size_t j = i; j < i + 4; ++j) {
+      if (fires_[j] != 0) EmitPixel(tile * kPixels + j, events);
+    }
+  }
+}
+
+void FlickerComb::EmitPixel(std::size_t p, EventColumns* events) {
+  if (learned_[p] > 0.0F && learned_[p] < kMinLearned) {
+    mean_[p] = 0;
+    return;
+  }
   // The mean lags by half a period, of whose first bin the middle counts.
   const TimeNs now = bin_end_ - bin_ * (kPerPeriod - 1) / 2;
-  for (std::size_t p = tile * kPixels; p < (tile + 1) * kPixels; ++p) {
-    if (learned_[p] < kMinLearned && learned_[p] > 0.0F) mean_[p] = 0;
-    while (mean_[p] > kEmit * positive_step_[p] || mean_[p] < -kEmit * negative_step_[p]) {
-      const int sign = mean_[p] > 0 ? 1 : -1;
-      const int step = sign > 0 ? positive_step_[p] : negative_step_[p];
-      const int slope = sign * period_sum_[p];
-      const int past_middle = sign * mean_[p] - kPerPeriod / 2 * step;
-      const TimeNs since = slope > 0 ? bin_ * past_middle / slope : 0;
-      const auto [x, y] = tiles_.PixelAt(p);
-      events->push_back(now - std::clamp<TimeNs>(since, 0, kPerPeriod / 2 * bin_), x, y,
-                        static_cast<std::int8_t>(sign));
-      mean_[p] = static_cast<std::int16_t>(mean_[p] - sign * kPerPeriod * step);
-    }
+  while (mean_[p] > kEmit * positive_step_[p] || mean_[p] < -kEmit * negative_step_[p]) {
+    const int sign = mean_[p] > 0 ? 1 : -1;
+    const int step = sign > 0 ? positive_step_[p] : negative_step_[p];
+    const int slope = sign * period_sum_[p];
+    const int past_middle = sign * mean_[p] - kPerPeriod / 2 * step;
+    const TimeNs since = slope > 0 ? bin_ * past_middle / slope : 0;
+    const auto [x, y] = tiles_.PixelAt(p);
+    events->push_back(now - std::clamp<TimeNs>(since, 0, kPerPeriod / 2 * bin_), x, y, static_cast<std::int8_t>(sign));
+    mean_[p] = static_cast<std::int16_t>(mean_[p] - sign * kPerPeriod * step);
   }
 }
 
@@ -132,7 +148,9 @@ void FlickerComb::LearnSteps(std::size_t tile) {
     const float change = std::clamp(static_cast<float>(period_sum_[p]), -kUnit, kUnit) / static_cast<float>(activity);
     const float rate = std::max(kMinLearningRate, 1.0F / (2.0F + learned_[p]));
     learned_[p] += 1.0F;
-    SetLogRatio(p, log_ratio_[p] - 2.0F * rate * change);
+    log_ratio_[p] -= 2.0F * rate * change;
+    // The exponential costs more than all the rest of a period.
+    if (learned_[p] < kMinLearned || static_cast<int>(learned_[p]) % 8 == 0) SetLogRatio(p, log_ratio_[p]);
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -52,17 +53,20 @@ class FlickerComb {
   static constexpr int kPerPeriod = 8;
 
   void CloseBin(EventColumns* events);
+  bool Integrate(std::size_t tile);
   void Emit(std::size_t tile, EventColumns* events);
+  void EmitPixel(std::size_t p, EventColumns* events);
   void LearnSteps(std::size_t tile);
   void SetLogRatio(std::size_t pixel, float log_ratio);
 
   FlickerTiles tiles_;
-  TimeNs bin_ = 0;                    // length
-  TimeNs bin_end_ = 0;                // of the present bin
-  int phase_ = 0;                     // index of the present bin within the period
-  std::vector<std::uint8_t> active_;  // per tile
-  std::vector<std::uint32_t> slots_;  // active tiles
-  std::vector<std::uint8_t> age_;     // per tile: bins since it became active, saturated
+  TimeNs bin_ = 0;                                           // length
+  TimeNs bin_end_ = 0;                                       // of the present bin
+  int phase_ = 0;                                            // index of the present bin within the period
+  std::vector<std::uint8_t> active_;                         // per tile
+  std::vector<std::uint32_t> slots_;                         // active tiles
+  std::vector<std::uint8_t> age_;                            // per tile: bins since it became active, saturated
+  std::array<std::int16_t, FlickerTiles::kPixels> fires_{};  // of one tile: not 0 for pixels with events
   // Per pixel, tile by tile; in units of 1/64 threshold.
   std::vector<std::int16_t> present_;        // sum of the present bin's events
   std::vector<std::int16_t> ring_;           // [tile][bin of the period][pixel]: of the last period's bins

@@ -14,10 +14,12 @@ constexpr std::uint8_t kMaxCount = std::numeric_limits<std::uint8_t>::max();
 // A vote. Noise reaches the significance once in 10^6 frequencies.
 constexpr float kVoteSignificance = 15.0F;
 constexpr float kVoteAgreement = 0.6F;
-constexpr float kMinRatio = 0.1F;  // below it, most events are the scene's
+constexpr float kVoteRatio = 0.1F;
 // A tile at a frequency that the votes have confirmed.
 constexpr float kActiveSignificance = 8.0F;
 constexpr float kActiveAgreement = 0.5F;
+// Below it, most events are the scene's, and would lose more by the mean than by the flicker among them.
+constexpr float kActiveRatio = 0.3F;
 
 constexpr double kStepHz = 0.5;
 constexpr float kFade = 0.75F;        // of a score from window to window
@@ -113,7 +115,7 @@ std::vector<FlickerDetector::Vote> FlickerDetector::FindVotes(const FlickerSpect
     if (best == 0) continue;
     const double k = FindFundamental(i, spectrum_.Refine(i, best));
     const FlickerSpectrum::Line line = spectrum_.Inspect(i, k, row);
-    if (line.agreement > kVoteAgreement && line.ratio > kMinRatio) votes.push_back({i, k / kBinsPerHz});
+    if (line.agreement > kVoteAgreement && line.ratio > kVoteRatio) votes.push_back({i, k / kBinsPerHz});
   }
   return votes;
 }
@@ -156,7 +158,7 @@ std::vector<FlickerTile> FlickerDetector::FindFlickering(const FlickerSpectrum::
   for (std::size_t i = 0; i < spectrum_.size(); ++i) {
     if (spectrum_.Significance(i, nearest) < kActiveSignificance) continue;
     const FlickerSpectrum::Line line = spectrum_.Inspect(i, k, row);
-    if (line.agreement > kActiveAgreement && line.ratio > kMinRatio) {
+    if (line.agreement > kActiveAgreement && line.ratio > kActiveRatio) {
       flickering.push_back({spectrum_.tile(i), spectrum_.NegativePerPositive(i)});
     }
   }

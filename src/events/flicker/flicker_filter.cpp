@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
 #include <limits>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -28,13 +28,23 @@ void AppendAll(const EventColumns& from, EventColumns* to) {
 }
 
 void SortByTime(EventColumns* events) {
-  std::vector<std::uint32_t> order(events->size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return events->t[i]; });
-  EventColumns sorted;
-  sorted.reserve(events->size());
-  for (const std::uint32_t i : order) AppendEvent(*events, i, &sorted);
-  *events = std::move(sorted);
+  struct Event {
+    TimeNs t;
+    std::uint16_t y, x;
+    std::int8_t polarity;
+    auto operator<=>(const Event&) const = default;
+  };
+  std::vector<Event> sorted(events->size());
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    sorted[i] = {events->t[i], events->y[i], events->x[i], events->polarity[i]};
+  }
+  std::ranges::sort(sorted);
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    events->t[i] = sorted[i].t;
+    events->x[i] = sorted[i].x;
+    events->y[i] = sorted[i].y;
+    events->polarity[i] = sorted[i].polarity;
+  }
 }
 
 /// Forgets the first `count` events.

@@ -49,6 +49,10 @@ int Sum(const std::uint8_t* parts) {
 
 }  // namespace
 
+FlickerSpectrum::FlickerSpectrum() {
+  for (std::size_t bin = 0; bin < kBins; ++bin) window_[bin] = Window(bin);
+}
+
 void FlickerSpectrum::Compute(std::vector<std::uint32_t> tiles, const Row& row) {
   tiles_ = std::move(tiles);
   pairs_ = (tiles_.size() + 1) / 2;
@@ -86,7 +90,7 @@ void FlickerSpectrum::LoadSignals(const Row& row) {
   const std::size_t n = tiles_.size();
   for (std::size_t bin = 0; bin < kBins; ++bin) {
     const FlickerCounts* counts = row(bin);
-    const float window = Window(bin);
+    const float window = window_[bin];
     float* real = &real_[ReverseBits(bin) * pairs_];
     float* imaginary = &imaginary_[ReverseBits(bin) * pairs_];
     if (n % 2 != 0) imaginary[pairs_ - 1] = 0.0F;
@@ -155,12 +159,13 @@ double FlickerSpectrum::Refine(std::size_t i, std::size_t k) const {
 FlickerSpectrum::Line FlickerSpectrum::Inspect(std::size_t i, double k, const Row& row) const {
   float re[kParts] = {};
   float im[kParts] = {};
-  const double step = -2.0 * std::numbers::pi * k / kBins;
+  const std::complex<double> step = std::polar(1.0, -2.0 * std::numbers::pi * k / kBins);
+  std::complex<double> wave = 1.0;
   for (std::size_t bin = 0; bin < kBins; ++bin) {
     const FlickerCounts& tile = row(bin)[tiles_[i]];
-    const auto window = static_cast<double>(Window(bin));
-    const auto c = static_cast<float>(window * std::cos(step * static_cast<double>(bin)));
-    const auto s = static_cast<float>(window * std::sin(step * static_cast<double>(bin)));
+    const auto c = window_[bin] * static_cast<float>(wave.real());
+    const auto s = window_[bin] * static_cast<float>(wave.imag());
+    wave *= step;
     for (int j = 0; j < kParts; ++j) {
       const float signal = positive_weight_[i] * static_cast<float>(tile.positive[j]) -
                            negative_weight_[i] * static_cast<float>(tile.negative[j]);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <complex>
 #include <cstddef>
 #include <cstdint>
@@ -21,6 +22,8 @@ class FlickerSpectrum {
  public:
   static constexpr std::size_t kBins = 256;  ///< samples of a signal
   using Row = std::function<const FlickerCounts*(std::size_t bin)>;
+
+  FlickerSpectrum();
 
   /// Computes the spectra of `tiles`; row(bin) holds the counts of all tiles.
   void Compute(std::vector<std::uint32_t> tiles, const Row& row);
@@ -57,6 +60,7 @@ class FlickerSpectrum {
   void Transform();
   void SplitSignals();
 
+  std::array<float, kBins> window_;
   std::vector<std::uint32_t> tiles_;
   std::size_t pairs_ = 0;               // of tiles: one of the two is the real part
   std::vector<float> positive_weight_;  // per tile
