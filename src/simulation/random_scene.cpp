@@ -121,6 +121,7 @@ void SetPlainParameters(const YAML::Node& node, const std::string& prefix, const
 
 /// The file if it has the section; undefined for every other file, of which Parameters::LoadFile says what is wrong.
 YAML::Node ReadRandomScene(const std::filesystem::path& file) {
+  if (!std::filesystem::is_regular_file(file)) return YAML::Node(YAML::NodeType::Undefined);
   try {
     const YAML::Node root = YAML::LoadFile(file.string());
     if (root.IsMap() && root[kSection]) return root;

@@ -30,9 +30,9 @@ class RealProgram(BenchTest):
             for name in ("tracks_over_3_px_share", "tracks_mostly_over_3_px_share", "tracks_astray_over_3_px_share",
                          "positions_past_3_px_share", "tracks_that_move_share"):
                 self.assertTrue(0 <= float(row[name]) < 1, name)
-        self.assertEqual(self.bench("odometry", *words, "--recording", f"{ROOT}/data_samples/street:0.2+1"), 0, self.err)
+        self.assertEqual(self.bench("odometry", *words, "--recording", f"{ROOT}/data_samples/street:0.2+1.2"), 0, self.err)
         rows = self.table("out/bench_odometry/odometry.csv")
-        self.assertEqual([row["scene"] for row in rows], ["slider:0.3"] * 3 + ["street:0.2+1"] * 3)
+        self.assertEqual([row["scene"] for row in rows], ["slider:0.3"] * 3 + ["street:0.2+1.2"] * 3)
         for name in ("recorded_s", "path_m", "coverage_share", "mean_planar_percent", "max_planar_percent",
                      "rotation_deg_per_m", "run_x_real_time", "odometry_x_real_time", "cpu_s"):
             self.assertGreater(float(rows[0][name]), 0, name)

@@ -17,8 +17,8 @@ namespace evo::tracking::testing {
 using Motion = std::function<Eigen::Vector2d(double)>;
 
 /// Small crosses at random places that move together. Every point of a cross fires at a steady rate at its pixel,
-/// without a lag; the two arms have opposite polarities at first. Like an edge's, the polarity of an arm changes when the
-/// motion crosses the arm the other way.
+/// without a lag; the two arms have opposite polarities at first. Like an edge's, the polarity of an arm changes when
+/// the motion crosses the arm the other way.
 struct CrossScene {
   int width = 120;
   int height = 90;

@@ -95,7 +95,8 @@ std::vector<DirectedMotion> TurningMotions(double angle) {
              const double turned = 0.5 * M_PI * t / kDuration;
              return radius * (std::sin(turned) * along + (1.0 - std::cos(turned)) * across);
            }},
-          {"turns round", [=](double t) -> Vector2d {
+          {"turns round",
+           [=](double t) -> Vector2d {
              const double radius = 120.0 * kDuration / M_PI;
              const double turned = M_PI * t / kDuration;
              return radius * (std::sin(turned) * along + (1.0 - std::cos(turned)) * across);
@@ -120,8 +121,7 @@ TEST(TrackEvents, FollowsAMotionThatStopsReversesAndTurnsInEveryDirection) {
   for (const auto& [name, errors] : errors_of) {
     EXPECT_GE(errors.size(), 50u) << name;
     EXPECT_LT(MedianNorm(errors), 0.35) << name;
-    EXPECT_LE(std::ranges::count_if(errors, [](const auto& e) { return e.norm() > 3.0; }),
-              std::ssize(errors) / 20)
+    EXPECT_LE(std::ranges::count_if(errors, [](const auto& e) { return e.norm() > 3.0; }), std::ssize(errors) / 20)
         << name;
   }
 }

@@ -20,7 +20,7 @@ constexpr float kNormalSigma = 0.25f;     // rad, of an edge's normal from the e
 constexpr float kSweepGain = 0.8f / kNormalSigma;
 constexpr double kMinTurnSine = 0.42;      // of a turn that flips more than a few edges: 25 degrees
 constexpr double kMinSpeedSigmas = 3.0;    // a faster motion has a certain direction
-constexpr float kMinTensor = 1e-30f;        // guards a division
+constexpr float kMinTensor = 1e-30f;       // guards a division
 constexpr float kMinSquaredSpeed = 1e-6f;  // px^2/s^2, guards a division
 
 /// Velocities of a row of cells: (x, y) + column * (x_step, y_step), px/s.
@@ -76,8 +76,8 @@ bool MayFlip(const PolarityFlips::Turn& turn, double radius_px) {
   return false;
 }
 
-/// The normals of edges by the structure tensor (xx, xy, yy): the eigenvector of its larger eigenvalue, by the half-angle
-/// formulas.
+/// The normals of edges by the structure tensor (xx, xy, yy): the eigenvector of its larger eigenvalue, by the
+/// half-angle formulas.
 EVO_HOT void FindNormals(const float* xx, const float* xy, const float* yy, int cells, float* normal_x,
                          float* normal_y) {
   for (int c = 0; c < cells; ++c) {
@@ -155,15 +155,14 @@ void PolarityFlips::FindProbabilities(const Turn& turn) {
   probability_.resize(normal_x_.size());
   const int radius = side_ / 2;
   const auto row_of = [&](const TemplateVelocity& velocity, int v) -> RowVelocity {
-    const Eigen::Vector2f first =
-        (velocity.at_centre + velocity.rate * Eigen::Vector2d(-radius, v)).cast<float>();
+    const Eigen::Vector2f first = (velocity.at_centre + velocity.rate * Eigen::Vector2d(-radius, v)).cast<float>();
     return {first.x(), first.y(), static_cast<float>(velocity.rate(0, 0)), static_cast<float>(velocity.rate(1, 0))};
   };
   for (int r = 0; r < side_; ++r) {
     const int first = r * side_;
     FindFlipProbabilities(row_of(turn.reference, r - radius), row_of(turn.present, r - radius),
-                          static_cast<float>(turn.sigma_px_s),
-                          normal_x_.data() + first, normal_y_.data() + first, side_, probability_.data() + first);
+                          static_cast<float>(turn.sigma_px_s), normal_x_.data() + first, normal_y_.data() + first,
+                          side_, probability_.data() + first);
   }
 }
 
