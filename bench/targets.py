@@ -60,6 +60,11 @@ ABLATIONS = [
     "tracker.rejection_ratio=0",
     "tracker.template_gain=1",
     "tracker.use_polarity=false",
+    "tracker.predict_polarity=false",
+    "tracker.min_log_likelihood_ratio=-10",
+    "tracker.innovation_gate=1000",
+    "events.hot_pixels.detect=false",
+    "events.flicker.remove=false",
 ]
 
 

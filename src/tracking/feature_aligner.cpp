@@ -59,7 +59,9 @@ void FeatureAligner::Predict(const TrackedFeature& feature, double step_s, const
   motion.flow += alignment->J_pixel_rotation * correction.angular_velocity;
   const double flow_sigma_px_s =
       ego_motion_.jacobians().focal_px() * ego_motion_.typical_angular_acceleration() * step_s;
-  feature.event_template.FindFlips(VelocityInTemplate(motion), flow_sigma_px_s, &alignment->flips);
+  if (options_.predict_polarity) {
+    feature.event_template.FindFlips(VelocityInTemplate(motion), flow_sigma_px_s, &alignment->flips);
+  }
 }
 
 bool FeatureAligner::GatherEvents(const events::EventHistory& history, TimeNs t, const TrackedFeature& feature,

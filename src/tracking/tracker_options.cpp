@@ -61,6 +61,8 @@ void RegisterCameraMotion(Parameters& parameters, TrackerOptions& o) {
                  "restore the fast rotation that windows average away, by a spline");
   parameters.Add("tracker.epipolar_filter", &o.epipolar_filter, "filter the positions across their epipolar lines");
   parameters.Add("tracker.use_polarity", &o.use_polarity, "associate only events of equal polarity");
+  parameters.Add("tracker.predict_polarity", &o.predict_polarity,
+                 "flip the polarities of edges that the motion crosses the other way");
 }
 
 void RegisterLoss(Parameters& parameters, TrackerOptions& o) {

@@ -47,6 +47,7 @@ struct TrackerOptions {
   double affine_prior = 20.0;
   double template_gain = 0.1;
   bool use_polarity = true;
+  bool predict_polarity = true;
 
   // Motion of the camera.
   bool ego_motion = true;
