@@ -10,8 +10,8 @@ namespace evo::report {
 namespace {
 
 // What is out of the ordinary. docs/evaluation.md repeats these thresholds.
-constexpr double kMinWantedRatio = 0.5;       // features in the median: the tracker fills up to the wanted number
-constexpr std::size_t kMinFeatures = 20;      // a map starts from 15 that agree, and some are outliers
+constexpr double kMinWantedRatio = 0.5;   // features in the median: the tracker fills up to the wanted number
+constexpr std::size_t kMinFeatures = 20;  // a map starts from 15 that agree, and some are outliers
 // At 7 m/s what is 50 m away rests within 43 px of the direction of travel: 6 % of a sensor of 346 x 260 pixels.
 constexpr double kMaxRestRatio = 0.1;
 constexpr double kMaxHotPixelRatio = 0.005;   // sensors have 0.05 to 0.5 % of hot pixels
@@ -39,18 +39,19 @@ std::string DescribeRestart(TimeNs restart, const std::vector<LossDiagnosis>& lo
 
 void WarnOfFilters(const FilterDiagnosis& seen, std::vector<std::string>* warnings) {
   if (seen.hot_pixel_ratio > kMaxHotPixelRatio) {
-    warnings->push_back(
-        fmt::format("{} pixels are hot, {:.2f} % of the sensor; above {:.1f} % the sensor is worn or warm, or something "
-                    "in the scene flickers",
-                    seen.hot_pixels, Percent(seen.hot_pixel_ratio), Percent(kMaxHotPixelRatio)));
+    warnings->push_back(fmt::format(
+        "{} pixels are hot, {:.2f} % of the sensor; above {:.1f} % the sensor is worn or warm, or something "
+        "in the scene flickers",
+        seen.hot_pixels, Percent(seen.hot_pixel_ratio), Percent(kMaxHotPixelRatio)));
   }
   if (seen.hot_event_ratio > kMaxOtherEventsRatio) {
     warnings->push_back(fmt::format("hot pixels made {:.0f} % of the events", Percent(seen.hot_event_ratio)));
   }
   if (seen.flicker_event_ratio > kMaxOtherEventsRatio) {
-    warnings->push_back(fmt::format("lamps that flicker at {:.1f} Hz made {:.0f} % of the events; edges in their light "
-                                    "may be lost",
-                                    seen.flicker_hz, Percent(seen.flicker_event_ratio)));
+    warnings->push_back(
+        fmt::format("lamps that flicker at {:.1f} Hz made {:.0f} % of the events; edges in their light "
+                    "may be lost",
+                    seen.flicker_hz, Percent(seen.flicker_event_ratio)));
   }
   if (seen.masked_pixel_ratio > kMaxMaskedRatio) {
     warnings->push_back(fmt::format("the mask covers {:.0f} % of the sensor; is black what is to be ignored?",
@@ -64,9 +65,9 @@ void WarnOfFeatures(const FeatureDiagnosis& seen, std::vector<std::string>* warn
     return;
   }
   if (seen.median < kMinWantedRatio * seen.wanted) {
-    warnings->push_back(
-        fmt::format("only {:.0f} of {} wanted features were live in the median: little texture or motion, or much noise",
-                    seen.median, seen.wanted));
+    warnings->push_back(fmt::format(
+        "only {:.0f} of {} wanted features were live in the median: little texture or motion, or much noise",
+        seen.median, seen.wanted));
   }
   if (seen.min_at && seen.min < kMinFeatures) {
     warnings->push_back(fmt::format("only {} features were live at {} s: the pose is uncertain there or lost", seen.min,
@@ -111,7 +112,7 @@ void WarnOfTrajectory(const TrajectoryDiagnosis& seen, std::vector<std::string>*
 }
 
 /// To four decimals, so that the order of a sum does not show.
-double Rounded(double ratio) { return std::round(1e4 * ratio) * 1e-4; }
+double Rounded(double ratio) { return std::round(1e4 * ratio) / 1e4; }
 
 }  // namespace
 
@@ -138,7 +139,7 @@ std::vector<std::pair<std::string, double>> DiagnosisValues(const RunDiagnosis& 
     values.emplace_back("scale_held", seen->scale_is_held ? 1.0 : 0.0);
     add_ratio("scale_covered_ratio", seen->scale_covered_ratio);
     add_ratio("forward_ratio", seen->forward_ratio);
-    if (seen->position_sigma_ratio) values.emplace_back("position_sigma_ratio", *seen->position_sigma_ratio);
+    if (seen->position_sigma_ratio) add_ratio("position_sigma_ratio", *seen->position_sigma_ratio);
   }
   return values;
 }
@@ -177,8 +178,9 @@ std::string DescribeDiagnosis(const RunDiagnosis& diagnosis) {
   std::string text;
   const auto add = [&](const std::string& part) { text += (text.empty() ? "" : "; ") + part; };
   if (const auto& seen = diagnosis.features) {
-    add(fmt::format("{:.0f} features live in the median, {} at the least, {:.1f} % of their observations at rest",
-                    seen->median, seen->min, Percent(seen->at_rest.ratio)));
+    const std::string min = seen->min_at ? fmt::format("{} at the least, ", seen->min) : "";
+    add(fmt::format("{:.0f} features live in the median, {}{:.1f} % of their observations at rest", seen->median, min,
+                    Percent(seen->at_rest.ratio)));
   }
   if (const auto& seen = diagnosis.filters; seen && seen->hot_pixels > 0) {
     add(fmt::format("{} hot pixels with {:.1f} % of the events", seen->hot_pixels, Percent(seen->hot_event_ratio)));

@@ -73,7 +73,7 @@ TEST(RunDiagnosisTest, WarnsOfFeatures) {
 
 TEST(RunDiagnosisTest, NothingTrackedIsOneWarning) {
   EXPECT_TRUE(Contains(WarningAfter([](RunDiagnosis* run) {
-                         run->features = FeatureDiagnosis{.wanted = 150, .min_at = 0};
+                         run->features = FeatureDiagnosis{.wanted = 150, .min_at = 0, .at_rest = {}};
                        }),
                        "nothing was tracked"));
 }
@@ -94,8 +94,9 @@ TEST(RunDiagnosisTest, RestartsStateTheirCause) {
   EXPECT_TRUE(Contains(once, "started anew once"));
   EXPECT_TRUE(Contains(once, "at 2.000000000 s (lost at 1.900000000 s with 12 features, 9 of them in the map, 4 of"))
       << once;
-  const std::string often = WarningAfter(
-      [](RunDiagnosis* run) { run->trajectory->restarts = {1'000'000'000, 2'000'000'000, 3'000'000'000, 4'000'000'000}; });
+  const std::string often = WarningAfter([](RunDiagnosis* run) {
+    run->trajectory->restarts = {1'000'000'000, 2'000'000'000, 3'000'000'000, 4'000'000'000};
+  });
   EXPECT_TRUE(Contains(often, "started anew 4 times"));
   EXPECT_TRUE(often.ends_with("at 3.000000000 s, ...")) << often;
 }

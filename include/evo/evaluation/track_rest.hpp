@@ -18,8 +18,8 @@ struct RestStatistics {
   double moving_ratio = 0.0;  ///< of the observations by tracks that rest while the scene moves
 };
 
-inline constexpr int kMinRestFrames = 15;   ///< jitter hides the speed of shorter tracks
-inline constexpr double kRestSpeed = 6.0;   ///< px/s: 1.8 px over kMinRestFrames frames of 20 ms, more than the jitter
+inline constexpr int kMinRestFrames = 15;  ///< jitter hides the speed of shorter tracks
+inline constexpr double kRestSpeed = 6.0;  ///< px/s: 1.8 px over kMinRestFrames frames of 20 ms, more than the jitter
 inline constexpr double kMovingSpeed = 24.0;  ///< px/s: four times as fast as what rests
 
 /// Collects these statistics of tracks that arrive in parts. The scene moves in a second of the recording if a quarter

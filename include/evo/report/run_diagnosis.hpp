@@ -24,10 +24,10 @@ struct FilterDiagnosis {
 
 /// The features of the tracker.
 struct FeatureDiagnosis {
-  int wanted = 0;                 ///< parameter; 0: unknown
-  double median = 0.0;            ///< live ones in a frame
-  std::size_t min = 0;            ///< fewest in a frame after the start
-  std::optional<TimeNs> min_at;   ///< stamp of this frame; empty: the recording is too short to tell
+  int wanted = 0;                ///< parameter; 0: unknown
+  double median = 0.0;           ///< live ones in a frame
+  std::size_t min = 0;           ///< fewest in a frame after the start
+  std::optional<TimeNs> min_at;  ///< stamp of this frame; empty: the recording is too short to tell
   evaluation::RestStatistics at_rest;
 };
 
@@ -41,14 +41,14 @@ struct LossDiagnosis {
 
 /// The trajectory of the odometry.
 struct TrajectoryDiagnosis {
-  double coverage = 0.0;                  ///< frames with a pose over all frames
-  std::vector<TimeNs> restarts;           ///< frames at which the map was started anew
-  std::vector<LossDiagnosis> losses;      ///< in order of time
-  bool scale_is_held = false;             ///< by the ground
-  double scale_covered_ratio = 0.0;       ///< part of the path where the scale is known within a percent
-  double forward_ratio = 0.0;             ///< part of the path along the optical axis, within 45 degrees
+  double coverage = 0.0;              ///< frames with a pose over all frames
+  std::vector<TimeNs> restarts;       ///< frames at which the map was started anew
+  std::vector<LossDiagnosis> losses;  ///< in order of time
+  bool scale_is_held = false;         ///< by the ground
+  double scale_covered_ratio = 0.0;   ///< part of the path where the scale is known within a percent
+  double forward_ratio = 0.0;         ///< part of the path along the optical axis, within 45 degrees
   double duration_s = 0.0;
-  std::optional<double> position_sigma_ratio;  ///< standard deviation of the last position over the path
+  std::optional<double> position_sigma_ratio;  ///< of the end, over the path; empty after a restart
 };
 
 /// What was seen in a run, as far as it came.

@@ -77,7 +77,8 @@ report::TrajectoryDiagnosis DiagnoseTrajectory(const odometry::OdometryResult& r
   diagnosis.forward_ratio = ForwardRatio(trajectory);
   if (!trajectory.empty()) diagnosis.duration_s = ToSeconds(trajectory.back().t - trajectory.front().t);
   const double path = geometry::PathLength(trajectory);
-  if (!result.covariances.empty() && path > 0.0) {
+  // Covariances start anew with each segment.
+  if (!result.covariances.empty() && diagnosis.restarts.empty() && path > 0.0) {
     const auto position = result.covariances.back().covariance.topLeftCorner<3, 3>();
     diagnosis.position_sigma_ratio = std::sqrt(position.trace()) / path;
   }

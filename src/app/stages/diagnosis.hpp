@@ -32,8 +32,7 @@ auto WithErrorDiagnosis(const report::RunDiagnosis& diagnosis, const Work& work)
   try {
     return work();
   } catch (const Error& error) {
-    const bool is_of_data =
-        error.kind() == ErrorKind::kTrackingLost || error.kind() == ErrorKind::kDegenerateAlignment;
+    const bool is_of_data = error.kind() == ErrorKind::kTrackingLost || error.kind() == ErrorKind::kDegenerateAlignment;
     const std::string seen = report::DescribeDiagnosis(diagnosis);
     if (!is_of_data || seen.empty()) throw;
     throw Error(error.kind(), std::string(error.what()) + "; seen: " + seen);
