@@ -124,6 +124,7 @@ OdometryResult RunOdometry(const events::Tracks& tracks, const geometry::Camera&
   }
   result.key_frames = static_cast<int>(handler.key_frames().size());
   for (const int index : handler.bootstraps()) result.bootstraps.push_back(frames[index].t);
+  result.losses = handler.losses();
 
   std::vector<Segment> segments = CutSegments(handler);
   if (options.final_refinement.enabled) {

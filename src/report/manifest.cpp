@@ -82,6 +82,29 @@ Json HotPixelList(std::vector<events::HotPixel> pixels) {
   return list;
 }
 
+Json LossList(const std::vector<LossDiagnosis>& losses) {
+  Json list = Json::array();
+  for (const auto& loss : losses) {
+    list.push_back({{"t", FormatTime(loss.t)},
+                    {"features", loss.features},
+                    {"map_points", loss.map_points},
+                    {"inliers", loss.inliers}});
+  }
+  return list;
+}
+
+/// What was seen; nothing of a stage that did not run.
+void AddDiagnosis(const Manifest& manifest, Json* json) {
+  if (manifest.seen.empty()) return;
+  Json& seen = (*json)["seen"] = Json::object();
+  for (const auto& [name, value] : manifest.seen) {
+    const bool is_count = value == std::round(value) && std::abs(value) < 1e15;
+    seen[name] = is_count ? Json(static_cast<std::int64_t>(value)) : Json(value);
+  }
+  if (!manifest.losses.empty()) (*json)["losses"] = LossList(manifest.losses);
+  (*json)["warnings"] = manifest.warnings;
+}
+
 Manifest FromJson(const Json& json) {
   Manifest manifest;
   json.at("version").get_to(manifest.version);
@@ -94,6 +117,10 @@ Manifest FromJson(const Json& json) {
   for (const auto& stamp : json.at("rebootstraps")) manifest.rebootstraps.push_back(ParseStamp(stamp));
   for (const auto& [stage, seconds] : Object(json, "wall_time_s").items()) manifest.stages.push_back({stage, seconds});
   if (json.contains("scale")) json.at("scale").get_to(manifest.scale);
+  if (json.contains("seen")) {
+    for (const auto& [name, value] : Object(json, "seen").items()) manifest.seen.emplace_back(name, value);
+  }
+  if (json.contains("warnings")) json.at("warnings").get_to(manifest.warnings);
   if (json.contains("recorded_s")) manifest.recorded_s = json.at("recorded_s").get<double>();
   AppendParameters(Object(json, "parameters"), "", &manifest.parameters);
   return manifest;
@@ -154,6 +181,7 @@ void WriteManifest(const std::filesystem::path& path, const Manifest& manifest) 
   json["rebootstraps"] = Json::array();
   for (const TimeNs stamp : manifest.rebootstraps) json["rebootstraps"].push_back(FormatTime(stamp));
   if (!manifest.scale.empty()) json["scale"] = manifest.scale;
+  AddDiagnosis(manifest, &json);
   json["wall_time_s"] = Json::object();
   for (const auto& stage : manifest.stages) json["wall_time_s"][stage.stage] = stage.seconds;
   if (manifest.recorded_s) json["recorded_s"] = *manifest.recorded_s;

@@ -24,6 +24,12 @@ TEST_F(PipelineTest, DayMeetsItsBounds) {
   EXPECT_EQ(manifest["inputs"].size(), 3u);
   EXPECT_TRUE(manifest["rebootstraps"].empty());
   EXPECT_NE(out.find("sim3"), std::string::npos) << out;
+  // What was seen: nothing out of the ordinary.
+  EXPECT_GE(manifest["seen"]["coverage"].get<double>(), 0.98);  // the first of 74 frames has no pose
+  EXPECT_GT(manifest["seen"]["live_features_median"].get<double>(), 100.0);
+  EXPECT_TRUE(manifest["warnings"].empty()) << manifest["warnings"];
+  for (const char* line : {"\nfeatures   ", "\ncoverage   "}) EXPECT_NE(out.find(line), std::string::npos) << out;
+  EXPECT_EQ(out.find("\nwarning    "), std::string::npos) << out;
 }
 
 TEST_F(PipelineTest, NightMeetsItsBounds) {

@@ -71,6 +71,8 @@ TEST_F(RunFilesTest, ForcedRunReplacesAllEarlierResults) {
 
   // A run that fails leaves no manifest, by which its folder is known to be complete.
   EXPECT_EQ(Run(words + WithoutTruth() + "--set odometry.bootstrap.min_disparity_px=200"), 6) << err;
+  EXPECT_NE(err.find("; seen: "), std::string::npos) << "the error says what was seen: " << err;
+  EXPECT_EQ(std::ranges::count(err, '\n'), 1) << err;
   EXPECT_FALSE(fs::exists(result / "manifest.json"));
   EXPECT_FALSE(fs::exists(result / "trajectory.txt"));
 }

@@ -118,6 +118,10 @@ TEST(Odometry, ANewSegmentAfterAGapContinuesTheVelocity) {
   const Drive drive = MakeDrive({.stop = false, .blackout = FromSeconds(0.5), .seed = 6});
   const auto result = Estimate(drive);
   EXPECT_EQ(result.bootstraps.size(), 2u);
+  ASSERT_EQ(result.losses.size(), 1u);
+  EXPECT_GE(result.losses.front().features, result.losses.front().map_points);
+  EXPECT_GE(result.losses.front().map_points, result.losses.front().inliers);
+  EXPECT_LE(result.losses.front().t, result.bootstraps.back());
   const Accuracy accuracy = Evaluate(result.trajectory, drive.truth);
   EXPECT_LT(accuracy.planar_percent, 3.0);  // only the speed carries the scale over
   EXPECT_GT(accuracy.coverage, 0.93);

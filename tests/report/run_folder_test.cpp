@@ -37,6 +37,21 @@ TEST_F(RunFolderTest, ManifestReadsBackAsWritten) {
   EXPECT_DOUBLE_EQ(*RealTimeFactor(manifest), 2.5);
 }
 
+TEST_F(RunFolderTest, WhatWasSeenReadsBackAsWritten) {
+  Manifest manifest;
+  manifest.seen = {{"live_features_median", 148.0}, {"at_rest_ratio", 0.0123}};
+  manifest.losses = {{1'900'000'000, 12, 9, 4}};
+  manifest.warnings = {"nothing was tracked"};
+  std::filesystem::create_directories(folder / "day");
+  WriteManifest(folder / "day" / "manifest.json", manifest);
+  const Manifest read = ReadManifest(folder / "day" / "manifest.json");
+  EXPECT_EQ(read.seen, manifest.seen);
+  EXPECT_EQ(read.warnings, manifest.warnings);
+  const std::string text = ReadFile(folder / "day" / "manifest.json");
+  EXPECT_NE(text.find("\"live_features_median\": 148,"), std::string::npos);
+  EXPECT_NE(text.find("\"t\": \"1.900000000\""), std::string::npos);
+}
+
 TEST_F(RunFolderTest, SpeedIsUnknownWithoutTracking) {
   Manifest manifest;
   manifest.stages = {{"odometry", 1.0}};

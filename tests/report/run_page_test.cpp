@@ -89,6 +89,26 @@ TEST_F(RunPageTest, ShowsNumbersParametersAndOrigin) {
   EXPECT_EQ(Count(page, "href=\"#run-2\""), 4);  // two alignments in two tables
 }
 
+TEST_F(RunPageTest, ShowsWhatWasSeenAboveTheResults) {
+  EXPECT_EQ(Page({EvaluatedRun("old")}).find("What was seen"), std::string::npos);
+  Manifest manifest;
+  manifest.seen = {{"coverage", 0.9}, {"restarts", 2.0}};
+  manifest.warnings = {"only 90.0 % of the frames <have> a pose"};
+  const auto day = EvaluatedRun("day");
+  WriteManifest(day / "manifest.json", manifest);
+  const std::string page = Page({EvaluatedRun("old"), day});
+  const auto section = page.find("<h2>What was seen</h2>");
+  const auto warning = page.find("day</a>: only 90.0 % of the frames &lt;have&gt; a pose</li>");
+  const auto value =
+      page.find("<td class=\"number\" data-value=\"0.9\">90.0</td><td class=\"number\" data-value=\"2\">2</td>");
+  EXPECT_LT(section, warning);
+  EXPECT_LT(warning, value);
+  EXPECT_LT(value, page.find("<h2>Results"));
+  manifest.warnings.clear();
+  WriteManifest(day / "manifest.json", manifest);
+  EXPECT_NE(Page({day}).find("Nothing is out of the ordinary."), std::string::npos);
+}
+
 TEST_F(RunPageTest, NamesTooLargePictures) {
   const auto run = EvaluatedRun("day");
   Write("day/plots/errors.svg", std::string(2'000'001, ' '));

@@ -21,6 +21,14 @@ struct GroundScale {
   double max_scale = 0.0;       ///< the same
 };
 
+/// What a frame offered when the pose was lost there.
+struct TrackingLoss {
+  TimeNs t = 0;
+  std::size_t features = 0;    ///< tracks in the frame
+  std::size_t map_points = 0;  ///< of these with a point of the map
+  std::size_t inliers = 0;     ///< of these that agree with the best pose
+};
+
 struct OdometryResult {
   geometry::Trajectory trajectory;  ///< the poses of the frames that could be tracked
   std::vector<int> inliers;         ///< number of points that agree with each pose
@@ -32,6 +40,7 @@ struct OdometryResult {
   int frames = 0;                     ///< number of frames, with and without a pose
   int key_frames = 0;                 ///< number of key frames
   std::vector<TimeNs> bootstraps;     ///< first frame of every segment; with more than one the scale was lost between
+  std::vector<TrackingLoss> losses;   ///< where the pose was lost, with and without a new segment after it
   std::optional<GroundScale> ground;  ///< if the height above the ground is held
   std::vector<TimeNs> lost;           ///< frames without a pose between the first and the last pose
 };

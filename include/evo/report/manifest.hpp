@@ -9,6 +9,7 @@
 
 #include "evo/core/time.hpp"
 #include "evo/events/hot_pixels.hpp"
+#include "evo/report/run_diagnosis.hpp"
 
 namespace evo::report {
 
@@ -32,9 +33,12 @@ struct Manifest {
   std::vector<ManifestInput> inputs;
   std::vector<std::pair<std::string, std::int64_t>> counts;  ///< "events", "tracks", "frames", ...
   std::vector<StageTime> stages;
-  std::vector<events::HotPixel> hot_pixels;  ///< of the filters; written, not read back
-  std::optional<double> recorded_s;          ///< time from the first tracked event frame to the last (s)
-  std::vector<TimeNs> rebootstraps;          ///< stamps of the frames at which the odometry reinitialised
+  std::vector<events::HotPixel> hot_pixels;          ///< of the filters; written, not read back
+  std::optional<double> recorded_s;                  ///< time from the first tracked event frame to the last (s)
+  std::vector<TimeNs> rebootstraps;                  ///< stamps of the frames at which the odometry reinitialised
+  std::vector<std::pair<std::string, double>> seen;  ///< see DiagnosisValues
+  std::vector<LossDiagnosis> losses;                 ///< written, not read back
+  std::vector<std::string> warnings;                 ///< see DiagnosisWarnings
   std::string scale;  ///< unit of the trajectory: "arbitrary" or "ground" (m); empty without odometry
 };
 

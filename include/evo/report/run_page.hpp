@@ -8,10 +8,10 @@
 
 namespace evo::report {
 
-/// index.html: a self-contained page about all runs with a sortable table, trajectories and errors side by side, the
-/// parameters that differ, and for each run its plots, inputs, command line and warnings. `table` is MergeRuns(runs).
-/// Pictures of more than 2 MB are named instead of shown. Equal runs give equal bytes. Throws Error (kInput) if a
-/// picture cannot be read.
+/// index.html: a self-contained page about all runs with what was seen in them, a sortable table, trajectories and
+/// errors side by side, the parameters that differ, and for each run its plots, inputs, command line and warnings.
+/// `table` is MergeRuns(runs). Pictures of more than 2 MB are named instead of shown. Equal runs give equal bytes.
+/// Throws Error (kInput) if a picture cannot be read.
 std::string RunsPage(const std::string& title, const std::vector<RunFolder>& runs, const CsvTable& table);
 
 }  // namespace evo::report

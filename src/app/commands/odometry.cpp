@@ -32,7 +32,8 @@ void RunOdometryCommand(const OdometryArguments& arguments, const std::vector<st
   if (arguments.common.force) RemoveOdometryResults(arguments.results.out);
   const odometry::OdometryResult result = RunOdometryStage(config.odometry, {tracks, arguments.tracks}, camera, &run);
   run.Finish();
-  std::cout << FormatOdometry(result);
+  std::cout << FormatOdometry(result) << report::FormatTrajectory(*run.diagnosis.trajectory)
+            << report::FormatWarnings(run.diagnosis);
 }
 
 }  // namespace

@@ -56,10 +56,11 @@ void RunAll(const RunArguments& arguments, const std::vector<std::string>& comma
 
   events::Tracks tracks;
   const TrackingOutcome tracking = RunTrackingStage(config.tracker, &recording, &run, &tracks);
-  std::cout << FormatTracking(tracking) << std::flush;
+  std::cout << FormatTracking(tracking) << report::FormatFeatures(*run.diagnosis.features) << std::flush;
   const odometry::OdometryResult odometry =
       RunOdometryStage(config.odometry, {tracks, out / "tracks.txt"}, recording.camera, &run);
-  std::cout << FormatOdometry(odometry) << FormatSpeed(run) << std::flush;
+  std::cout << FormatOdometry(odometry) << report::FormatTrajectory(*run.diagnosis.trajectory) << FormatSpeed(run)
+            << report::FormatWarnings(run.diagnosis) << std::flush;
   if (truth) {
     RunEvaluationStage(config.evaluation, *truth, {odometry.trajectory, odometry.covariances, tracking.result.frames},
                        alignments, &run);

@@ -25,7 +25,8 @@ void RunTrack(const TrackArguments& arguments, const std::vector<std::string>& c
   if (arguments.common.force) RemoveTrackingResults(arguments.results.out);
   const TrackingOutcome outcome = RunTrackingStage(config.tracker, &recording, &run);
   run.Finish();
-  std::cout << FormatTracking(outcome) << FormatSpeed(run);
+  std::cout << FormatTracking(outcome) << report::FormatFeatures(*run.diagnosis.features) << FormatSpeed(run)
+            << report::FormatWarnings(run.diagnosis);
 }
 
 }  // namespace

@@ -16,6 +16,9 @@ StageRun::StageRun(const CommonOptions& common, ResultOptions result_options, co
 
 void StageRun::Finish() {
   record.FinishChecksums();
+  record.manifest.seen = report::DiagnosisValues(diagnosis);
+  record.manifest.warnings = report::DiagnosisWarnings(diagnosis);
+  if (diagnosis.trajectory) record.manifest.losses = diagnosis.trajectory->losses;
   report::WriteManifest(results.out / "manifest.json", record.manifest);
 }
 

@@ -7,6 +7,7 @@
 #include "app/run/interrupt.hpp"
 #include "app/run/run_record.hpp"
 #include "evo/core/parallel.hpp"
+#include "evo/report/run_diagnosis.hpp"
 
 namespace evo::app {
 
@@ -21,7 +22,8 @@ struct StageRun {
   ResultOptions results;
   bool show_progress;
   RunRecord record;
-  InterruptGuard guard;  ///< before the threads, which inherit its signal mask
+  report::RunDiagnosis diagnosis;  ///< of the stages so far
+  InterruptGuard guard;            ///< before the threads, which inherit its signal mask
   ThreadPool pool;
 };
 

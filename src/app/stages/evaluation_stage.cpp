@@ -7,6 +7,7 @@
 
 #include "app/evaluation/trajectory_results.hpp"
 #include "app/run/error_context.hpp"
+#include "app/stages/diagnosis.hpp"
 #include "evo/core/error.hpp"
 #include "evo/io/trajectory_io.hpp"
 #include "evo/report/terminal_summary.hpp"
@@ -44,16 +45,18 @@ void RunEvaluationStage(const evaluation::EvaluationOptions& options, const Grou
   const std::filesystem::path& out = run->results.out;
   const TimeNs offset = FromSeconds(options.association.estimate_clock_offset_s);
   const evaluation::EvaluationInterval interval{estimate.frames.front() + offset, estimate.frames.back() + offset};
-  WithErrorContext((out / "trajectory.txt").string() + " against " + truth.file.string(), [&] {
-    const evaluation::Evaluation evaluation = run->record.Time("evaluate", [&] {
-      return evaluation::Evaluate(truth.trajectory, estimate.trajectory, alignments, interval, options,
-                                  estimate.covariances);
+  WithErrorDiagnosis(run->diagnosis, [&] {
+    WithErrorContext((out / "trajectory.txt").string() + " against " + truth.file.string(), [&] {
+      const evaluation::Evaluation evaluation = run->record.Time("evaluate", [&] {
+        return evaluation::Evaluate(truth.trajectory, estimate.trajectory, alignments, interval, options,
+                                    estimate.covariances);
+      });
+      run->record.Time("write_evaluation", [&] {
+        WriteEvaluationResults(out, SequenceName(truth.file), evaluation, !run->results.no_plots,
+                               run->record.manifest.rebootstraps);
+      });
+      if (!evaluation.alignments.empty()) std::cout << report::FormatSummary(evaluation);
     });
-    run->record.Time("write_evaluation", [&] {
-      WriteEvaluationResults(out, SequenceName(truth.file), evaluation, !run->results.no_plots,
-                             run->record.manifest.rebootstraps);
-    });
-    if (!evaluation.alignments.empty()) std::cout << report::FormatSummary(evaluation);
   });
 }
 

@@ -7,6 +7,7 @@
 
 #include "app/run/error_context.hpp"
 #include "app/run/output_folder.hpp"
+#include "app/stages/diagnosis.hpp"
 #include "evo/core/progress.hpp"
 #include "evo/io/pose_covariance_io.hpp"
 #include "evo/io/trajectory_io.hpp"
@@ -77,9 +78,11 @@ odometry::OdometryResult RunOdometryStage(const odometry::OdometryOptions& optio
                                           const geometry::Camera& camera, StageRun* run) {
   odometry::OdometryResult result = run->record.Time("odometry", [&] {
     OdometryProgress progress(run->show_progress);
-    return WithErrorContext(input.file.string(), [&] {
-      return odometry::RunOdometry(input.tracks, camera, options, run->pool.size(),
-                                   [&](odometry::OdometryStage stage, double done) { progress.Update(stage, done); });
+    return WithErrorDiagnosis(run->diagnosis, [&] {
+      return WithErrorContext(input.file.string(), [&] {
+        return odometry::RunOdometry(input.tracks, camera, options, run->pool.size(),
+                                     [&](odometry::OdometryStage stage, double done) { progress.Update(stage, done); });
+      });
     });
   });
   RecordFailures(result, &run->record);
@@ -90,6 +93,7 @@ odometry::OdometryResult RunOdometryStage(const odometry::OdometryOptions& optio
     odometry::WriteMap(result.points, out / "map.ply");
   });
   RecordCounts(result, &run->record);
+  run->diagnosis.trajectory = DiagnoseTrajectory(result);
   return result;
 }
 

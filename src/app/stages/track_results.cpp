@@ -12,6 +12,7 @@ void TrackResults::Add(events::Tracks observations) {
   io::RoundAsWritten(&observations);  // odometry from tracks.txt gives the same trajectory
   writer_.Write(observations);
   lifetimes_.Add(observations);
+  rest_.Add(observations);
   lifetimes_.EndBefore(observations.back().t);
   for (const auto& observation : observations) {
     if (live_.empty() || live_.back().t != observation.t) live_.push_back({observation.t, 0});

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "evo/evaluation/lifetime.hpp"
+#include "evo/evaluation/track_rest.hpp"
 #include "evo/io/track_io.hpp"
 #include "evo/report/figures.hpp"
 
@@ -28,6 +29,7 @@ class TrackResults {
   evaluation::LifetimeStatistics Lifetimes(std::span<const TimeNs> frames) const {
     return lifetimes_.Statistics(frames);
   }
+  evaluation::RestStatistics Rest() const { return rest_.Statistics(); }
   /// The number of tracks in each of the `frames`, which ascend.
   std::vector<report::LiveFeatures> CountLive(std::span<const TimeNs> frames) const;
 
@@ -35,6 +37,7 @@ class TrackResults {
   io::TrackWriter writer_;
   events::Tracks* tracks_;
   evaluation::LifetimeCounter lifetimes_;
+  evaluation::RestCounter rest_;
   std::vector<report::LiveFeatures> live_;  // of frames with tracks
   std::size_t observations_ = 0;
 };

@@ -10,6 +10,7 @@
 
 #include "app/run/error_context.hpp"
 #include "app/run/output_folder.hpp"
+#include "app/stages/diagnosis.hpp"
 #include "app/stages/event_drawing.hpp"
 #include "app/stages/track_results.hpp"
 #include "evo/core/error.hpp"
@@ -156,6 +157,8 @@ TrackingOutcome RunTrackingStage(const tracking::TrackerOptions& options, Record
     }
   });
   RecordCounts(outcome, run);
+  run->diagnosis.filters = DiagnoseFilters(outcome.filters, outcome.hot_pixels, recording->camera);
+  run->diagnosis.features = DiagnoseFeatures(options, results.CountLive(frames), results.Rest());
   return outcome;
 }
 

@@ -65,6 +65,7 @@ void FrameHandler::ProcessFrame(int index) {
   if (tracking_) {
     spdlog::warn("odometry: lost at {} s", FormatTime(frames_[index].t));
     tracking_ = false;
+    losses_.push_back(last_failure_);
     bootstrapper_.Reset();
   }
   if (auto bootstrap = bootstrapper_.Add(index)) StartSegment(std::move(*bootstrap));  // equations 9-13
@@ -111,7 +112,11 @@ bool FrameHandler::TrackFrame(int index) {
   PoseEstimate estimate = optimizer_.Optimize(
       matches.observations, velocity_is_recent ? PredictPose(frame.t) : T_cam_world_last);  // equations 1-5
   if (!optimizer_.Accepts(estimate)) estimate = optimizer_.Optimize(matches.observations, T_cam_world_last);
-  if (!optimizer_.Accepts(estimate)) return false;
+  if (!optimizer_.Accepts(estimate)) {
+    last_failure_ = {frame.t, frame.features.size(), matches.tracks.size(),
+                     static_cast<std::size_t>(estimate.inlier_count)};
+    return false;
+  }
   FrameMessage message;
   for (std::size_t i = 0; i < matches.tracks.size(); ++i) {
     (estimate.inliers[i] ? message.inliers : message.outliers).push_back(matches.tracks[i]);

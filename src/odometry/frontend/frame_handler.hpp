@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "evo/odometry/odometry_options.hpp"
+#include "evo/odometry/odometry_result.hpp"
 #include "odometry/frontend/bootstrap.hpp"
 #include "odometry/frontend/frame.hpp"
 #include "odometry/frontend/pose_optimizer.hpp"
@@ -40,6 +41,8 @@ class FrameHandler {
   const std::vector<int>& key_frames() const { return key_frames_; }
   /// First frames of all segments.
   const std::vector<int>& bootstraps() const { return bootstraps_; }
+  /// Where the pose was lost, in order of time.
+  const std::vector<TrackingLoss>& losses() const { return losses_; }
   /// The points of all segments, complete after Run().
   std::vector<Point> Points() const;
   /// Why there is no map yet, for the user.
@@ -60,6 +63,7 @@ class FrameHandler {
   void ProcessFrame(int index);
   /// Applies the map updates of all frames up to `index`.
   void ApplyMapUpdates(int index);
+  /// Estimates and records the pose; otherwise says in `last_failure_` what the frame offered.
   bool TrackFrame(int index);
   LandmarkMatches MatchLandmarks(const Frame& frame) const;
   /// Empty at the beginning of a segment.
@@ -85,6 +89,8 @@ class FrameHandler {
   std::vector<int> key_frames_;           // indices of the frames
   std::vector<FrameRecord> records_;
   std::vector<int> bootstraps_;
+  std::vector<TrackingLoss> losses_;
+  TrackingLoss last_failure_;
   bool tracking_ = false;
   int last_tracked_ = -1;      // the last frame with a pose
   int previous_tracked_ = -1;  // the one before in the same segment; -1 at its beginning

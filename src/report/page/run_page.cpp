@@ -10,6 +10,7 @@
 #include "evo/report/run_table.hpp"
 #include "report/page/html.hpp"
 #include "report/page/page_resources.hpp"
+#include "report/page/run_diagnosis_section.hpp"
 #include "report/page/run_pictures.hpp"
 #include "report/tables/run_measures.hpp"
 
@@ -199,7 +200,7 @@ std::string RunsPage(const std::string& title, const std::vector<RunFolder>& run
   std::ostringstream body;
   body << "<h1>" << HtmlEscape(title) << "</h1>\n<p class=\"lead\">" << Plural(runs.size(), "run") << ", "
        << (failed == 0 ? "none" : std::to_string(failed)) << " failed</p>\n"
-       << FailureList(runs) << "<h2>Results</h2>\n"
+       << FailureList(runs) << DiagnosisSection(runs) << "<h2>Results</h2>\n"
        << "<p class=\"note\">Position errors are mean absolute errors after alignment, in m and in % of the path "
           "length; "
           "&ldquo;max&rdquo; is the largest one. APE RMSE is the root mean square absolute pose error (translation). "
