@@ -97,8 +97,22 @@ void FilteredEventReader::ReadAhead() {
   }
 }
 
+bool FilteredEventReader::NextRead(EventColumns* block) {
+  const auto read = [this] { return reader_->Next(&next_); };
+  if (!has_next_.valid()) has_next_ = std::async(std::launch::async, read);
+  if (!has_next_.get()) return false;
+  std::swap(*block, next_);
+  has_next_ = std::async(std::launch::async, read);
+  return true;
+}
+
+TimeNs FilteredEventReader::last_stamp() const {
+  if (has_next_.valid()) has_next_.wait();  // the recording is read by one thread at a time
+  return reader_->last_stamp();
+}
+
 bool FilteredEventReader::NextExamined(EventColumns* block) {
-  if (!reader_->Next(block)) {
+  if (!NextRead(block)) {
     block->clear();
     if (flicker_) flicker_->Finish(block);
     return false;

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <future>
 #include <memory>
 #include <vector>
 
@@ -46,7 +47,7 @@ class FilteredEventReader : public EventReader {
   /// As EventReader says; a block is never empty.
   bool Next(EventColumns* block) override;
   TimeNs first_stamp() const override { return reader_->first_stamp(); }
-  TimeNs last_stamp() const override { return reader_->last_stamp(); }
+  TimeNs last_stamp() const override;
   double progress() const override { return reader_->progress(); }
 
   FilterStatistics statistics() const;
@@ -58,6 +59,8 @@ class FilteredEventReader : public EventReader {
 
   /// Reads and examines blocks until all changes within the first held one are known.
   void ReadAhead();
+  /// Replaces `block` by the next one of the recording, and reads the one after it while the filters work.
+  bool NextRead(EventColumns* block);
   /// Takes the next events of the recording, replaces them by those that have passed the first stages, maybe none, and
   /// returns false at the end of the recording.
   bool NextExamined(EventColumns* block);
@@ -87,6 +90,8 @@ class FilteredEventReader : public EventReader {
   std::deque<EventColumns> held_;
   std::size_t held_events_ = 0;
   std::vector<EventColumns> spare_;  // kept for their memory
+  EventColumns next_;                // of the recording
+  std::future<bool> has_next_;       // declared last: its destructor waits for the thread that writes the block
 };
 
 }  // namespace evo::events

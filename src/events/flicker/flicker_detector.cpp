@@ -18,8 +18,10 @@ constexpr float kVoteRatio = 0.1F;
 // A tile at a frequency that the votes have confirmed.
 constexpr float kActiveSignificance = 8.0F;
 constexpr float kActiveAgreement = 0.5F;
-// Below it, most events are the scene's, and would lose more by the mean than by the flicker among them.
 constexpr float kActiveRatio = 0.3F;
+// Flickering events of a pixel in a period. Fewer are noise, which the tracker bears better than the mean's loss of
+// time.
+constexpr float kActiveEvents = 0.25F;
 
 constexpr double kStepHz = 0.5;
 constexpr float kFade = 0.75F;        // of a score from window to window
@@ -155,10 +157,11 @@ std::vector<FlickerTile> FlickerDetector::FindFlickering(const FlickerSpectrum::
   std::vector<FlickerTile> flickering;
   const double k = frequency_hz_ * kBinsPerHz;
   const auto nearest = static_cast<std::size_t>(std::lround(k));
+  const float min_events = kActiveEvents * static_cast<float>(FlickerTiles::kPixels) * static_cast<float>(k);
   for (std::size_t i = 0; i < spectrum_.size(); ++i) {
     if (spectrum_.Significance(i, nearest) < kActiveSignificance) continue;
     const FlickerSpectrum::Line line = spectrum_.Inspect(i, k, row);
-    if (line.agreement > kActiveAgreement && line.ratio > kActiveRatio) {
+    if (line.agreement > kActiveAgreement && line.ratio > kActiveRatio && line.events > min_events) {
       flickering.push_back({spectrum_.tile(i), spectrum_.NegativePerPositive(i)});
     }
   }

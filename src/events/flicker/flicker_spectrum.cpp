@@ -78,10 +78,12 @@ void FlickerSpectrum::FindWeights(const Row& row) {
   positive_weight_.resize(n);
   negative_weight_.resize(n);
   total_.resize(n);
+  events_.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     const auto all = static_cast<float>(std::max(positive[i] + negative[i], 1U));
     positive_weight_[i] = static_cast<float>(negative[i]) / all;
     negative_weight_[i] = static_cast<float>(positive[i]) / all;
+    events_[i] = all;
     total_[i] = 2.0F * positive_weight_[i] * static_cast<float>(positive[i]);
   }
 }
@@ -189,6 +191,7 @@ FlickerSpectrum::Line FlickerSpectrum::Inspect(std::size_t i, double k, const Ro
   Line line;
   line.agreement = (std::norm(weighted_sum) - square) / std::max(power * power - square, 1e-6F);
   line.ratio = std::abs(sum) / std::max(0.5F * total_[i], 1e-6F);
+  line.events = line.ratio * events_[i];
   return line;
 }
 

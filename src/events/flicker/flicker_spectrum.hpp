@@ -45,6 +45,7 @@ class FlickerSpectrum {
     float agreement = 0.0F;  ///< of the parts' phases: 1 if all parts have the same, about 0 for noise, in a tile with
                              ///< one hot pixel, and for a pattern that moves through the tile
     float ratio = 0.0F;      ///< amplitude over that of a signal all of whose events flicker
+    float events = 0.0F;     ///< this ratio of the tile's events
   };
   Line Inspect(std::size_t i, double k, const Row& row) const;
 
@@ -65,8 +66,9 @@ class FlickerSpectrum {
   std::size_t pairs_ = 0;               // of tiles: one of the two is the real part
   std::vector<float> positive_weight_;  // per tile
   std::vector<float> negative_weight_;
-  std::vector<float> total_;  // per tile: sum of the signal's absolute values
-  std::vector<float> real_;   // [sample or frequency][pair]
+  std::vector<float> events_;  // per tile
+  std::vector<float> total_;   // per tile: sum of the signal's absolute values
+  std::vector<float> real_;    // [sample or frequency][pair]
   std::vector<float> imaginary_;
   std::vector<float> power_;      // [frequency][tile]
   std::vector<float> power_sum_;  // of the frequencies before
