@@ -125,10 +125,10 @@ YAML::Node ReadRandomScene(const std::filesystem::path& file) {
   try {
     const YAML::Node root = YAML::LoadFile(file.string());
     if (root.IsMap() && root[kSection]) return root;
-  } catch (const YAML::Exception&) {
-    // Not YAML, or no file.
+    return YAML::Node(YAML::NodeType::Undefined);
+  } catch (const YAML::Exception&) {  // not YAML
+    return YAML::Node(YAML::NodeType::Undefined);
   }
-  return YAML::Node(YAML::NodeType::Undefined);
 }
 
 }  // namespace

@@ -57,8 +57,8 @@ void FlickerComb::SetActive(TimeNs t, TimeNs period, const std::vector<FlickerTi
 void FlickerComb::SetLogRatio(std::size_t pixel, float log_ratio) {
   log_ratio_[pixel] = std::clamp(log_ratio, -kMaxLogRatio, kMaxLogRatio);
   const float step = std::exp(0.5F * log_ratio_[pixel]);
-  positive_step_[pixel] = static_cast<std::int16_t>(kUnit * step + 0.5F);
-  negative_step_[pixel] = static_cast<std::int16_t>(kUnit / step + 0.5F);
+  positive_step_[pixel] = static_cast<std::int16_t>(std::lround(kUnit * step));
+  negative_step_[pixel] = static_cast<std::int16_t>(std::lround(kUnit / step));
 }
 
 void FlickerComb::CloseBin(EventColumns* events) {

@@ -65,7 +65,7 @@ Texture Weather(Random& random, Painter* painter, double contrast) {
   painter->Noise(random, 256, 256, 3, 0.015 * contrast, 0.8);
   painter->Noise(random, 32, 64, 4, 0.015 * contrast, 0.8);
   painter->Grain(random, 0.02 * contrast);
-  const int stains = static_cast<int>(contrast * (painter->width() * painter->height() / 8000));
+  const int stains = static_cast<int>(contrast * painter->width() * painter->height() / 8000.0);
   for (int i = 0; i < stains; ++i) {  // oil, leaves, chewing gum
     const double radius = random.Uniform(1.0, 4.5);
     painter->Ellipse(random.Uniform() * painter->width(), random.Uniform() * painter->height(), radius,
