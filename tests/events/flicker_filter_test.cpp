@@ -132,6 +132,18 @@ INSTANTIATE_TEST_SUITE_P(FrequencyAndDepth, FlickerAlone,
                                          std::tuple{217.0, 0.8}));
 
 /// An edge moves at 60 px/s through light that flickers.
+TEST(FlickerFilter, ALongSilenceIsBridged) {
+  Sensor sensor;
+  EventColumns events = sensor.Record(1.0, [](int, int, double t) { return LogFlicker(0.8, 100.0, t); });
+  const std::size_t count = events.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    events.push_back(events.t[i] + FromSeconds(1e6), events.x[i], events.y[i], events.polarity[i]);
+  }
+  const Filtered filtered = Filter(events, 10'000);
+  EXPECT_GT(filtered.statistics.flicker_events, events.size() * 9 / 10);
+  EXPECT_TRUE(std::ranges::is_sorted(filtered.events.t));
+}
+
 TEST(FlickerFilter, KeepsAnEdgeAtItsTime) {
   const auto edge_at = [](double t) { return 2.0 + 60.0 * t; };
   Sensor sensor;

@@ -38,7 +38,9 @@ class FlickerComb {
 
   /// Prepares for an event at `t`, not before earlier ones: appends the events of the bins that end until then.
   void AdvanceTo(TimeNs t, EventColumns* events) {
-    while (t >= bin_end_) CloseBin(events);
+    // After two periods without events the means stay as they are.
+    for (int bin = 0; bin < 2 * kPerPeriod && t >= bin_end_; ++bin) CloseBin(events);
+    if (t >= bin_end_) bin_end_ += ((t - bin_end_) / bin_ + 1) * bin_;
   }
   /// An event of an active tile.
   void Add(std::size_t tile, std::uint16_t x, std::uint16_t y, std::int8_t polarity) {

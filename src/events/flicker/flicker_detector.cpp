@@ -50,8 +50,8 @@ void FlickerDetector::Add(const EventColumns& block, std::deque<FlickerSegment>*
   started_ = true;
   FlickerCounts* row = RowAt(bin_);
   for (std::size_t i = 0; i < block.size(); ++i) {
-    while (block.t[i] >= bin_end_) {
-      NextBin(segments);
+    if (block.t[i] >= bin_end_) {
+      AdvanceTo(block.t[i], segments);
       row = RowAt(bin_);
     }
     FlickerCounts& counts = row[tiles_.TileOf(block.x[i], block.y[i])];
@@ -59,6 +59,13 @@ void FlickerDetector::Add(const EventColumns& block, std::deque<FlickerSegment>*
     std::uint8_t& count = (block.polarity[i] > 0 ? counts.positive : counts.negative)[part];
     if (count < kMaxCount) ++count;
   }
+}
+
+void FlickerDetector::AdvanceTo(TimeNs t, std::deque<FlickerSegment>* segments) {
+  // After a silence of two windows all counts are zero, and the next bins tell nothing new.
+  constexpr std::size_t kSilence = 2 * FlickerSpectrum::kBins;
+  for (std::size_t bin = 0; bin < kSilence && t >= bin_end_; ++bin) NextBin(segments);
+  if (t >= bin_end_) bin_end_ += ((t - bin_end_) / kBin + 1) * kBin;
 }
 
 void FlickerDetector::NextBin(std::deque<FlickerSegment>* segments) {

@@ -46,6 +46,8 @@ class FlickerDetector {
     double frequency_hz = 0.0;
   };
 
+  /// Closes the bins that end before `t`.
+  void AdvanceTo(TimeNs t, std::deque<FlickerSegment>* segments);
   void NextBin(std::deque<FlickerSegment>* segments);
   FlickerSegment Analyse();
   std::vector<std::uint32_t> FindBusyTiles();
