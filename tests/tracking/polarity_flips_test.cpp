@@ -78,7 +78,8 @@ TEST(PolarityFlips, OccurOnlyInATurnOrAnUncertainMotion) {
   };
   EXPECT_FALSE(any(Translation(1.0)));
   EXPECT_FALSE(any(Translation(1.3)));
-  EXPECT_TRUE(any(Translation(1.5)));
+  EXPECT_FALSE(any(Translation(1.9)));
+  EXPECT_TRUE(any(Translation(2.2)));
   EXPECT_TRUE(any(Translation(1.0 + M_PI)));
   EXPECT_TRUE(any(Translation(1.0, 2.5)));
 }

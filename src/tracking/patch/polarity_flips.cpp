@@ -18,7 +18,7 @@ constexpr float kNormalSigma = 0.25f;     // rad, of an edge's normal from the e
 // A turn by d sweeps over an edge with a probability of at most d times the density of the normal's angle; d is about
 // 2 sin(d / 2).
 constexpr float kSweepGain = 0.8f / kNormalSigma;
-constexpr double kMinTurnSine = 0.42;      // of a turn that flips more than a few edges: 25 degrees
+constexpr double kMinTurnSine = 0.87;      // of a turn that flips many edges: 60 degrees
 constexpr double kMinSpeedSigmas = 3.0;    // a faster motion has a certain direction
 constexpr float kMinTensor = 1e-30f;       // guards a division
 constexpr float kMinSquaredSpeed = 1e-6f;  // px^2/s^2, guards a division
