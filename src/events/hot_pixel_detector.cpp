@@ -6,6 +6,8 @@
 #include <functional>
 #include <limits>
 
+#include "events/time_bins.hpp"
+
 namespace evo::events {
 
 namespace {
@@ -118,7 +120,7 @@ void HotPixelDetector::Add(const EventColumns& events, std::vector<Change>* chan
       // A silence says nothing of any pixel: the next step begins with it.
       EndBin(changes);
       if (bins_ > 0) EndStep(changes);
-      bin_end_ += (t - bin_end_) / kBin * kBin + kBin;
+      bin_end_ = BinEndAfter(t, bin_end_, kBin);
     }
     while (t >= bin_end_) EndBin(changes);
     const auto end = std::lower_bound(events.t.begin() + static_cast<std::ptrdiff_t>(begin), events.t.end(), bin_end_);

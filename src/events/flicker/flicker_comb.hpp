@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "events/flicker/tiles.hpp"
+#include "events/time_bins.hpp"
 #include "evo/core/time.hpp"
 #include "evo/events/event_columns.hpp"
 
@@ -21,7 +22,7 @@ struct FlickerTile {
 /// The level of a pixel is the sum of its events: thresholds up for positive ones, thresholds down for negative ones.
 /// With the level A at the end of each of the kPerPeriod bins of a period, the mean M rises from bin to bin by
 /// (A_b - A_(b - period)) / kPerPeriod, the sum of the period's events over kPerPeriod. Flicker and its harmonics are
-/// the zeros of this filter. An event is given when M is kEmitLevel of a threshold away from the last event's; its
+/// the zeros of this filter. An event is given when M is three quarters of a threshold away from the last event's; its
 /// stamp is the time at which M crossed the middle, less the filter's delay. So an edge's events lie evenly about its
 /// time.
 ///
@@ -38,9 +39,8 @@ class FlickerComb {
 
   /// Prepares for an event at `t`, not before earlier ones: appends the events of the bins that end until then.
   void AdvanceTo(TimeNs t, EventColumns* events) {
-    // After two periods without events the means stay as they are.
-    for (int bin = 0; bin < 2 * kPerPeriod && t >= bin_end_; ++bin) CloseBin(events);
-    if (t >= bin_end_) bin_end_ += ((t - bin_end_) / bin_ + 1) * bin_;
+    for (int bin = 0; bin < kFadedPeriods * kPerPeriod && t >= bin_end_; ++bin) CloseBin(events);
+    if (t >= bin_end_) bin_end_ = BinEndAfter(t, bin_end_, bin_);
   }
   /// An event of an active tile.
   void Add(std::size_t tile, std::uint16_t x, std::uint16_t y, std::int8_t polarity) {
@@ -53,6 +53,7 @@ class FlickerComb {
 
  private:
   static constexpr int kPerPeriod = 8;
+  static constexpr int kFadedPeriods = 32;  // without events, after which no level changes any more
 
   void CloseBin(EventColumns* events);
   bool Integrate(std::size_t tile);

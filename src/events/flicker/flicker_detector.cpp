@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "events/time_bins.hpp"
+
 namespace evo::events {
 
 namespace {
@@ -65,7 +67,7 @@ void FlickerDetector::AdvanceTo(TimeNs t, std::deque<FlickerSegment>* segments) 
   // After a silence of two windows all counts are zero, and the next bins tell nothing new.
   constexpr std::size_t kSilence = 2 * FlickerSpectrum::kBins;
   for (std::size_t bin = 0; bin < kSilence && t >= bin_end_; ++bin) NextBin(segments);
-  if (t >= bin_end_) bin_end_ += ((t - bin_end_) / kBin + 1) * kBin;
+  if (t >= bin_end_) bin_end_ = BinEndAfter(t, bin_end_, kBin);
 }
 
 void FlickerDetector::NextBin(std::deque<FlickerSegment>* segments) {
