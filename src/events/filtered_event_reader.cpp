@@ -35,7 +35,10 @@ void Register(Parameters& parameters, EventFilterOptions& options) {
 
 FilteredEventReader::FilteredEventReader(std::unique_ptr<EventReader> reader, int width, int height,
                                          const EventFilterOptions& options, const IgnoredPixels& ignored)
-    : reader_(std::move(reader)), width_(static_cast<std::size_t>(width)), changes_(std::make_unique<Changes>()) {
+    : reader_(std::move(reader)),
+      width_(static_cast<std::size_t>(width)),
+      changes_(std::make_unique<Changes>()),
+      prefetcher_(reader_.get()) {
   const std::size_t pixels = width_ * static_cast<std::size_t>(height);
   if (!ignored.masked.empty() && ignored.masked.size() != pixels) {
     throw std::invalid_argument("the mask is not of the sensor's size");
@@ -97,22 +100,13 @@ void FilteredEventReader::ReadAhead() {
   }
 }
 
-bool FilteredEventReader::NextRead(EventColumns* block) {
-  const auto read = [this] { return reader_->Next(&next_); };
-  if (!has_next_.valid()) has_next_ = std::async(std::launch::async, read);
-  if (!has_next_.get()) return false;
-  std::swap(*block, next_);
-  has_next_ = std::async(std::launch::async, read);
-  return true;
-}
-
 TimeNs FilteredEventReader::last_stamp() const {
-  if (has_next_.valid()) has_next_.wait();  // the recording is read by one thread at a time
+  prefetcher_.Wait();  // the recording is read by one thread at a time
   return reader_->last_stamp();
 }
 
 bool FilteredEventReader::NextExamined(EventColumns* block) {
-  if (!NextRead(block)) {
+  if (!prefetcher_.Next(block)) {
     block->clear();
     if (flicker_) flicker_->Finish(block);
     return false;

@@ -3,42 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <future>
 #include <memory>
 #include <opencv2/core/utility.hpp>
 #include <optional>
 #include <utility>
 
 #include "evo/core/error.hpp"
+#include "evo/events/block_prefetcher.hpp"
 #include "tracking/smoothing/track_buffer.hpp"
 #include "tracking/tracker.hpp"
 
 namespace evo::tracking {
 
 namespace {
-
-/// Decodes a block of events while the caller processes the one before it.
-class BlockReader {
- public:
-  explicit BlockReader(events::EventReader* reader) : reader_(reader) { ReadAhead(); }
-
-  /// Replaces `block` by the next one. False at the end of the stream.
-  bool Next(events::EventColumns* block) {
-    if (!has_next_.get()) return false;
-    std::swap(*block, next_);
-    ReadAhead();
-    return true;
-  }
-
- private:
-  void ReadAhead() {
-    has_next_ = std::async(std::launch::async, [this] { return reader_->Next(&next_); });
-  }
-
-  events::EventReader* reader_;
-  events::EventColumns next_;
-  std::future<bool> has_next_;  // declared last: its destructor waits for the thread that writes the block
-};
 
 /// Runs a tracker over the event frames of a stream that arrives in blocks.
 class FrameSequence {
@@ -124,11 +101,11 @@ TrackingResult TrackEvents(events::EventReader* reader, const geometry::Camera& 
   cv::setUseOptimized(false);
   cv::setNumThreads(1);  // the pool has all the threads that were asked for
   FrameSequence sequence(camera, options, pool, sink, observe);
-  BlockReader blocks(reader);
+  events::BlockPrefetcher blocks(reader);
   events::EventColumns block;
   while (blocks.Next(&block)) {
     sequence.Add(block);
-    if (progress && !block.empty()) progress(reader->progress());
+    if (progress && !block.empty()) progress(blocks.progress());
   }
   return sequence.Finish();
 }

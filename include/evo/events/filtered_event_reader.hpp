@@ -3,10 +3,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <future>
 #include <memory>
 #include <vector>
 
+#include "evo/events/block_prefetcher.hpp"
 #include "evo/events/event_filter_options.hpp"
 #include "evo/events/event_reader.hpp"
 
@@ -48,7 +48,7 @@ class FilteredEventReader : public EventReader {
   bool Next(EventColumns* block) override;
   TimeNs first_stamp() const override { return reader_->first_stamp(); }
   TimeNs last_stamp() const override;
-  double progress() const override { return reader_->progress(); }
+  double progress() const override { return prefetcher_.progress(); }
 
   FilterStatistics statistics() const;
   /// The pixels left out as hot, known ones first, then in the order in which they were found.
@@ -59,8 +59,6 @@ class FilteredEventReader : public EventReader {
 
   /// Reads and examines blocks until all changes within the first held one are known.
   void ReadAhead();
-  /// Replaces `block` by the next one of the recording, and reads the one after it while the filters work.
-  bool NextRead(EventColumns* block);
   /// Takes the next events of the recording, replaces them by those that have passed the first stages, maybe none, and
   /// returns false at the end of the recording.
   bool NextExamined(EventColumns* block);
@@ -90,8 +88,7 @@ class FilteredEventReader : public EventReader {
   std::deque<EventColumns> held_;
   std::size_t held_events_ = 0;
   std::vector<EventColumns> spare_;  // kept for their memory
-  EventColumns next_;                // of the recording
-  std::future<bool> has_next_;       // declared last: its destructor waits for the thread that writes the block
+  BlockPrefetcher prefetcher_;       // of the recording
 };
 
 }  // namespace evo::events
