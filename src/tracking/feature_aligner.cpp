@@ -33,7 +33,9 @@ void FeatureAligner::Align(const events::EventHistory& history, TimeNs t, double
     if (MayRest(feature, *alignment)) alignment->state = State::kResting;
     return;
   }
-  if (Fit(feature, Association::kFine, alignment) || Fit(feature, Association::kCoarseToFine, alignment)) {
+  const EventHistogram& histogram = PredictPolarities(feature, step_s, alignment);
+  if (Fit(feature, histogram, Association::kFine, alignment) ||
+      Fit(feature, histogram, Association::kCoarseToFine, alignment)) {
     alignment->state = State::kAligned;
   } else if (MayRest(feature, *alignment)) {
     alignment->state = State::kResting;
@@ -57,11 +59,20 @@ void FeatureAligner::Predict(const TrackedFeature& feature, double step_s, const
   alignment->J_pixel_rotation = ego_motion_.jacobians().Lookup(alignment->predicted_position).J_pixel_rotation;
   alignment->predicted_position += alignment->J_pixel_rotation * correction.rotation;
   motion.flow += alignment->J_pixel_rotation * correction.angular_velocity;
+}
+
+const EventHistogram& FeatureAligner::PredictPolarities(const TrackedFeature& feature, double step_s,
+                                                        FeatureAlignment* alignment) const {
+  const EventHistogram& histogram = feature.event_template.histogram();
+  if (!options_.predict_polarity) return histogram;
   const double flow_sigma_px_s =
       ego_motion_.jacobians().focal_px() * ego_motion_.typical_angular_acceleration() * step_s;
-  if (options_.predict_polarity) {
-    feature.event_template.FindFlips(VelocityInTemplate(motion), flow_sigma_px_s, &alignment->flips);
-  }
+  feature.event_template.FindFlips(VelocityInTemplate(alignment->predicted), flow_sigma_px_s, &alignment->flips);
+  if (!alignment->flips.any()) return histogram;
+  thread_local std::optional<EventHistogram> flipped;
+  flipped = histogram;
+  alignment->flips.Apply(&*flipped);
+  return *flipped;
 }
 
 bool FeatureAligner::GatherEvents(const events::EventHistory& history, TimeNs t, const TrackedFeature& feature,
@@ -84,14 +95,9 @@ bool FeatureAligner::GatherEvents(const events::EventHistory& history, TimeNs t,
   return true;
 }
 
-bool FeatureAligner::Fit(const TrackedFeature& feature, Association association, FeatureAlignment* alignment) const {
-  thread_local std::optional<EventHistogram> flipped;
+bool FeatureAligner::Fit(const TrackedFeature& feature, const EventHistogram& histogram, Association association,
+                         FeatureAlignment* alignment) const {
   const bool has_flips = alignment->flips.any();
-  if (has_flips) {
-    flipped = feature.event_template.histogram();
-    alignment->flips.Apply(&*flipped);
-  }
-  const EventHistogram& histogram = has_flips ? *flipped : feature.event_template.histogram();
   const auto radius = static_cast<double>(options_.patch_radius_px);
   PatchMotion& motion = alignment->aligned;
   motion = alignment->predicted;

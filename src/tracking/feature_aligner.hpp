@@ -69,9 +69,13 @@ class FeatureAligner {
   /// Gathers the events of a window that is doubled if it holds too few. False if that one does, too.
   bool GatherEvents(const events::EventHistory& history, TimeNs t, const TrackedFeature& feature,
                     FeatureAlignment* alignment) const;
-  /// Aligns the template to the events from the predicted motion on (EM 2 of A. Z. Zhu et al.). False if the result
+  /// The template with the polarities of the predicted motion; valid until the thread's next call.
+  const EventHistogram& PredictPolarities(const TrackedFeature& feature, double step_s,
+                                          FeatureAlignment* alignment) const;
+  /// Aligns the `histogram` of the template to the events from the predicted motion on (EM 2 of A. Z. Zhu et al.). False if the result
   /// does not explain the events.
-  bool Fit(const TrackedFeature& feature, Association association, FeatureAlignment* alignment) const;
+  bool Fit(const TrackedFeature& feature, const EventHistogram& histogram, Association association,
+           FeatureAlignment* alignment) const;
   bool IsPlausible(const AlignmentQuality& quality, const TrackedFeature& feature, const PatchMotion& aligned) const;
 
   TrackerOptions options_;

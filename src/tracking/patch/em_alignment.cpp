@@ -59,6 +59,25 @@ struct InverseMotion {
   Eigen::Vector2f offset, flow, perspective, quadratic_rate;
 };
 
+/// Eight events in the coordinates of the template, with their associations.
+struct EventsInTemplate8 {
+  F32x8 dt, u, v;
+  std::int32_t plane_offsets[kLanes];
+  Columns8 associations;
+
+  EVO_INLINE void LookUp(const events::LocalEvents& events, std::size_t begin, const InverseMotion& motion,
+                         const AssociationTable& table, std::int32_t negative_offset) {
+    F32x8 event_x, event_y, event_dt;
+    Load(events.x, begin, kOutsidePx, &event_x);
+    Load(events.y, begin, kOutsidePx, &event_y);
+    Load(events.dt, begin, 0.0f, &event_dt);
+    dt = event_dt;
+    FindPlaneOffsets(events.polarity, begin, negative_offset, plane_offsets);
+    motion.ToTemplate(event_x, event_y, dt, &u, &v);
+    InterpolateAssociations(table, u, v, plane_offsets, &associations);
+  }
+};
+
 /// Sums over the events of shift x regressors and of weight x regressors x regressors.
 struct MomentSums {
   float w, wt, wu, wv, wtt, wtu, wtv, wuu, wuv, wvv;
@@ -73,20 +92,12 @@ EVO_HOT void SumMoments(const events::LocalEvents& events, const InverseMotion& 
   const std::int32_t negative_offset = planes == 2 ? table.side() * table.side() : 0;
   const F32x8 epsilon = F32x8{} + 1e-30f;
   for (std::size_t begin = 0; begin < events.size(); begin += kLanes) {
-    F32x8 event_x, event_y, dt;
-    Load(events.x, begin, kOutsidePx, &event_x);
-    Load(events.y, begin, kOutsidePx, &event_y);
-    Load(events.dt, begin, 0.0f, &dt);
-    std::int32_t plane_offsets[kLanes];
-    FindPlaneOffsets(events.polarity, begin, negative_offset, plane_offsets);
-    F32x8 u, v;
-    motion.ToTemplate(event_x, event_y, dt, &u, &v);
-    Columns8 associations;
-    InterpolateAssociations(table, u, v, plane_offsets, &associations);
-    const auto& [inlier, shift_x, shift_y, weight] = associations;
-    const F32x8 t = dt * per_window;
-    u *= per_radius;
-    v *= per_radius;
+    EventsInTemplate8 at;
+    at.LookUp(events, begin, motion, table, negative_offset);
+    const auto& [inlier, shift_x, shift_y, weight] = at.associations;
+    const F32x8 t = at.dt * per_window;
+    const F32x8 u = at.u * per_radius;
+    const F32x8 v = at.v * per_radius;
     const F32x8 pt = inlier * t;
     const F32x8 pu = inlier * u;
     const F32x8 pv = inlier * v;
@@ -124,22 +135,14 @@ EVO_HOT void SumLogLikelihoods(const events::LocalEvents& events, const InverseM
   const F32x8 epsilon = F32x8{} + 1e-30f;
   const F32x8 min_outlier = F32x8{} + 1e-6f;
   for (std::size_t begin = 0; begin < events.size(); begin += kLanes) {
-    F32x8 event_x, event_y, dt;
-    Load(events.x, begin, kOutsidePx, &event_x);
-    Load(events.y, begin, kOutsidePx, &event_y);
-    Load(events.dt, begin, 0.0f, &dt);
-    std::int32_t plane_offsets[kLanes];
-    FindPlaneOffsets(events.polarity, begin, negative_offset, plane_offsets);
-    F32x8 u, v;
-    motion.ToTemplate(event_x, event_y, dt, &u, &v);
-    Columns8 associations;
-    InterpolateAssociations(table, u, v, plane_offsets, &associations);
-    const F32x8& weight = associations.d;
+    EventsInTemplate8 at;
+    at.LookUp(events, begin, motion, table, negative_offset);
+    const F32x8& weight = at.associations.d;
     // The outlier probability is D0 / (D + D0).
-    const F32x8 outlier = 1.0f - associations.a / (weight > epsilon ? weight : epsilon);
+    const F32x8 outlier = 1.0f - at.associations.a / (weight > epsilon ? weight : epsilon);
     F32x8 log_outlier, log_even;
     Log(outlier > min_outlier ? outlier : min_outlier, &log_outlier);
-    for (int i = 0; i < kLanes; ++i) log_even[i] = even[plane_offsets[i] != 0];
+    for (int i = 0; i < kLanes; ++i) log_even[i] = even[at.plane_offsets[i] != 0];
     total -= weight * (log_outlier + log_even);
     total_weight += weight;
   }
