@@ -72,8 +72,8 @@ class FeatureAligner {
   /// The template with the polarities of the predicted motion; valid until the thread's next call.
   const EventHistogram& PredictPolarities(const TrackedFeature& feature, double step_s,
                                           FeatureAlignment* alignment) const;
-  /// Aligns the `histogram` of the template to the events from the predicted motion on (EM 2 of A. Z. Zhu et al.). False if the result
-  /// does not explain the events.
+  /// Aligns the `histogram` of the template to the events from the predicted motion on (EM 2 of A. Z. Zhu et al.).
+  /// False if the result does not explain the events.
   bool Fit(const TrackedFeature& feature, const EventHistogram& histogram, Association association,
            FeatureAlignment* alignment) const;
   bool IsPlausible(const AlignmentQuality& quality, const TrackedFeature& feature, const PatchMotion& aligned) const;

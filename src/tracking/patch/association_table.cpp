@@ -6,7 +6,7 @@
 #include <map>
 #include <tuple>
 
-#include "tracking/patch/gaussian_kernel.hpp"
+#include "tracking/patch/histogram_smoother.hpp"
 #include "tracking/patch/simd8.hpp"
 
 namespace evo::tracking {
@@ -18,25 +18,18 @@ constexpr float kMaxShiftSigmas = 2.5f;
 // Events per cell, so that an empty histogram divides by no zero.
 constexpr double kMinOutlierDensity = 1e-12;
 
-/// Smooths the planes of histograms of one size with one Gaussian. Each thread keeps its own, with its memory.
-class DensitySmoother {
+/// Smooths the planes of histograms of one size with one Gaussian, and weighs their cells. Each thread keeps its own.
+class DensitySmoother : public HistogramSmoother {
  public:
   DensitySmoother(int side, double sigma_px, AssociationTable::Weighting weighting)
-      : side_(side),
-        kernel_(MakeGaussianKernel(sigma_px, side / 2)),
-        margin_(static_cast<int>(kernel_.size())),
-        width_((side + margin_ + kLanes - 1) / kLanes * kLanes),
-        plane_(static_cast<std::size_t>((side + 2 * margin_) * width_)),
-        rows_(plane_.size()),
-        smooth_(plane_.size()),
-        weights_(static_cast<std::size_t>(side * width_)) {
+      : HistogramSmoother(side, sigma_px), weights_(static_cast<std::size_t>(side * width())) {
     const int radius = side / 2;
     for (int r = 1; r + 1 < side; ++r) {
       for (int c = 1; c + 1 < side; ++c) {
         const double distance = std::hypot(r - radius, c - radius) / radius;
         const double epanechnikov = std::max(0.0, 1.0 - distance * distance);
         const double weight = weighting == AssociationTable::Weighting::kUniform ? 1.0 : epanechnikov * epanechnikov;
-        weights_[static_cast<std::size_t>(r * width_ + c)] = static_cast<float>(weight);
+        weights_[static_cast<std::size_t>(r * width() + c)] = static_cast<float>(weight);
         total_weight_ += static_cast<float>(weight);
       }
     }
@@ -47,25 +40,11 @@ class DensitySmoother {
     return smoothers.try_emplace({side, sigma_px, weighting}, side, sigma_px, weighting).first->second;
   }
 
-  void Smooth(const float* plane) {
-    // A row runs into the next one, but only within the empty margin between them.
-    for (int r = 0; r < side_; ++r) std::copy_n(plane + r * side_, side_, plane_.data() + (margin_ + r) * width_);
-    const std::ptrdiff_t first = margin_ * width_;
-    ConvolveCells(kernel_, plane_.data() + first, 1, side_ * width_, rows_.data() + first);
-    ConvolveCells(kernel_, rows_.data() + first, width_, side_ * width_, smooth_.data() + first);
-  }
-
-  const float* density() const { return smooth_.data() + margin_ * width_; }  ///< side rows of width() cells
-  const float* weights() const { return weights_.data(); }                    ///< side rows of width() cells
-  int width() const { return width_; }
+  const float* weights() const { return weights_.data(); }  ///< side rows of width() cells
   float total_weight() const { return total_weight_; }
 
  private:
-  int side_;
-  std::vector<float> kernel_;
-  int margin_;  // empty rows above and below the plane, and the least number of empty cells between two rows
-  int width_;   // cells in a row of the members that follow
-  std::vector<float> plane_, rows_, smooth_, weights_;
+  std::vector<float> weights_;
   float total_weight_ = 0.0f;
 };
 
@@ -187,7 +166,7 @@ void AssociationTable::Build(const EventHistogram& histogram, double sigma_px, d
       .max_shift = static_cast<float>(kMaxShiftSigmas * sigma_px)};
   for (int p = 0; p < histogram.planes(); ++p) {
     smoother.Smooth(histogram.plane(p));
-    const float sum = TabulateAssociations(smoother.density(), smoother.weights(), smoother.width(), side_, model,
+    const float sum = TabulateAssociations(smoother.smooth(), smoother.weights(), smoother.width(), side_, model,
                                            cells_[static_cast<std::size_t>(p * side_ * side_)].data());
     log_even_densities_[static_cast<std::size_t>(p)] =
         std::log1p(sum / (smoother.total_weight() * model.outlier_density));

@@ -2,10 +2,12 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <map>
 
-#include "tracking/patch/gaussian_kernel.hpp"
+#include "tracking/patch/histogram_smoother.hpp"
 #include "tracking/patch/simd8.hpp"
 
 namespace evo::tracking {
@@ -76,6 +78,25 @@ bool MayFlip(const PolarityFlips::Turn& turn, double radius_px) {
   return false;
 }
 
+/// Memory that each thread keeps for histograms of one size.
+struct EdgeWorkspace {
+  explicit EdgeWorkspace(int side)
+      : density(side, kGradientSigmaPx), tensor(3, HistogramSmoother(side, kTensorSigmaPx)) {
+    events.resize(static_cast<std::size_t>(side * side));
+    products.fill(events);
+  }
+
+  static EdgeWorkspace& ForThread(int side) {
+    thread_local std::map<int, EdgeWorkspace> workspaces;
+    return workspaces.try_emplace(side, side).first->second;
+  }
+
+  HistogramSmoother density;
+  std::vector<HistogramSmoother> tensor;       // of each of the products
+  std::vector<float> events;                   // of both polarities
+  std::array<std::vector<float>, 3> products;  // xx, xy, yy of the density's gradient
+};
+
 /// The normals of edges by the structure tensor (xx, xy, yy): the eigenvector of its larger eigenvalue, by the
 /// half-angle formulas.
 EVO_HOT void FindNormals(const float* xx, const float* xy, const float* yy, int cells, float* normal_x,
@@ -108,46 +129,29 @@ void PolarityFlips::Update(const EventHistogram& histogram, const Turn& turn) {
 
 void PolarityFlips::FindEdges(const EventHistogram& histogram) {
   side_ = histogram.side();
-  // A margin of zeros all around, so that a row never runs into the next one.
-  thread_local std::vector<float> plane, rows, density, xx, xy, yy;
-  const std::vector<float> gradient_kernel = MakeGaussianKernel(kGradientSigmaPx, histogram.radius());
-  const std::vector<float> tensor_kernel = MakeGaussianKernel(kTensorSigmaPx, histogram.radius());
-  const int margin = static_cast<int>(std::max(gradient_kernel.size(), tensor_kernel.size()));
-  const int width = (side_ + margin + kLanes - 1) / kLanes * kLanes;
-  const auto cells = static_cast<std::size_t>((side_ + 2 * margin) * width);
-  for (auto* buffer : {&plane, &rows, &density, &xx, &xy, &yy}) buffer->assign(cells, 0.0f);
+  EdgeWorkspace& w = EdgeWorkspace::ForThread(side_);
+  const int cells = side_ * side_;
+  std::copy_n(histogram.plane(0), cells, w.events.data());
+  for (int i = 0; i < cells; ++i) w.events[static_cast<std::size_t>(i)] += histogram.plane(1)[i];
+  w.density.Smooth(w.events.data());
+  const int width = w.density.width();
   for (int r = 0; r < side_; ++r) {
     for (int c = 0; c < side_; ++c) {
-      float sum = 0.0f;
-      for (int p = 0; p < histogram.planes(); ++p) sum += histogram.plane(p)[r * side_ + c];
-      plane[static_cast<std::size_t>((margin + r) * width + c)] = sum;
+      const float* const at = w.density.smooth() + r * width + c;
+      const float dx = c > 0 && c + 1 < side_ ? at[1] - at[-1] : 0.0f;
+      const float dy = r > 0 && r + 1 < side_ ? at[width] - at[-width] : 0.0f;
+      const auto cell = static_cast<std::size_t>(r * side_ + c);
+      w.products[0][cell] = dx * dx;
+      w.products[1][cell] = dx * dy;
+      w.products[2][cell] = dy * dy;
     }
   }
-  const std::ptrdiff_t first = margin * width;
-  const auto smooth = [&](const std::vector<float>& kernel, std::vector<float>* cells_of_plane,
-                          std::vector<float>* out) {
-    ConvolveCells(kernel, cells_of_plane->data() + first, 1, side_ * width, rows.data() + first);
-    ConvolveCells(kernel, rows.data() + first, width, side_ * width, out->data() + first);
-  };
-  smooth(gradient_kernel, &plane, &density);
+  for (std::size_t k = 0; k < w.products.size(); ++k) w.tensor[k].Smooth(w.products[k].data());
+  normal_x_.resize(static_cast<std::size_t>(cells));
+  normal_y_.resize(normal_x_.size());
   for (int r = 0; r < side_; ++r) {
-    for (int c = 0; c < side_; ++c) {
-      const std::ptrdiff_t i = first + r * width + c;
-      const float dx = c > 0 && c + 1 < side_ ? density[i + 1] - density[i - 1] : 0.0f;
-      const float dy = r > 0 && r + 1 < side_ ? density[i + width] - density[i - width] : 0.0f;
-      xx[i] = dx * dx;
-      xy[i] = dx * dy;
-      yy[i] = dy * dy;
-    }
-  }
-  for (auto* moment : {&xx, &xy, &yy}) smooth(tensor_kernel, moment, moment);
-  const auto count = static_cast<std::size_t>(side_ * side_);
-  normal_x_.resize(count);
-  normal_y_.resize(count);
-  for (int r = 0; r < side_; ++r) {
-    const std::ptrdiff_t i = first + r * width;
-    FindNormals(xx.data() + i, xy.data() + i, yy.data() + i, side_, normal_x_.data() + r * side_,
-                normal_y_.data() + r * side_);
+    const auto row = [&](std::size_t k) { return w.tensor[k].smooth() + r * w.tensor[k].width(); };
+    FindNormals(row(0), row(1), row(2), side_, normal_x_.data() + r * side_, normal_y_.data() + r * side_);
   }
 }
 
