@@ -55,11 +55,7 @@ TEST(BonnetMirror, FollowsTheMountOfTheCamera) {
 TEST(BonnetMirror, IsRenderedOverTheScene) {
   const geometry::Camera lens = Davis346();
   Scene scene = Empty();
-  Surface ground;  // level, 1.5 m below
-  ground.origin = {-200, 1.5, -10};
-  ground.edge_u = {400, 0, 0};
-  ground.edge_v = {0, 0, 400};
-  scene.surfaces.push_back(ground);
+  scene.surfaces.push_back(LevelGround());
   scene.bonnet = Mirror();
   const auto image = RenderAll(scene, lens, 2);
   const auto depth = DepthOfAll(scene, lens);

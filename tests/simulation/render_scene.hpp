@@ -24,6 +24,15 @@ inline Scene Empty() {
   return scene;
 }
 
+/// Level ground 1.5 m below the camera.
+inline Surface LevelGround() {
+  Surface ground;
+  ground.origin = {-200, 1.5, -10};
+  ground.edge_u = {400, 0, 0};
+  ground.edge_v = {0, 0, 400};
+  return ground;
+}
+
 /// A rectangle that faces the camera at depth z.
 inline Surface Facing(double x0, double x1, double y0, double y1, double z, int texture = 0) {
   Surface surface;

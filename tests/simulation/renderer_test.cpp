@@ -25,11 +25,7 @@ INSTANTIATE_TEST_SUITE_P(BothLenses, RendererWith,
 TEST_P(RendererWith, DepthOfAPlaneIsExact) {
   const geometry::Camera lens = camera();
   Scene scene = Empty();
-  Surface ground;  // level, 1.5 m below
-  ground.origin = {-200, 1.5, -10};
-  ground.edge_u = {400, 0, 0};
-  ground.edge_v = {0, 0, 400};
-  scene.surfaces.push_back(ground);
+  scene.surfaces.push_back(LevelGround());
   const auto depth = DepthOfAll(scene, lens);
   int seen = 0;
   for (int y = 0; y < lens.height(); ++y) {
