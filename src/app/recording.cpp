@@ -48,6 +48,11 @@ events::IgnoredPixels ReadIgnoredPixels(const RecordingArguments& arguments, int
 
 }  // namespace
 
+void AddMaskOption(CLI::App& command, std::string& mask) {
+  command.add_option("--mask", mask, "PNG of the sensor's size; events at its black or transparent pixels are ignored")
+      ->type_name("IMAGE");
+}
+
 void AddSensorOption(CLI::App& command, std::string& sensor) {
   command.add_option("--sensor", sensor, "Size of the sensor in px for a calibration without one; default: 240x180")
       ->type_name("WxH");
@@ -69,10 +74,7 @@ void AddRecordingOptions(CLI::App& command, RecordingArguments& arguments) {
       ->type_name("S");
   command.add_option("--to", arguments.to, "End of the interval in s after the first event; default: the last event")
       ->type_name("S");
-  command
-      .add_option("--mask", arguments.mask,
-                  "PNG of the sensor's size; events at its black or transparent pixels are ignored")
-      ->type_name("IMAGE");
+  AddMaskOption(command, arguments.mask);
   command
       .add_option("--hot-pixels", arguments.hot_pixels,
                   "Text file of rows 'x y', as --save-hot-pixels writes it: pixels whose events are ignored")

@@ -30,6 +30,8 @@ void AddRecordingOptions(CLI::App& command, RecordingArguments& arguments);
 geometry::Camera OpenCamera(const std::filesystem::path& calibration, const std::string& sensor);
 /// --sensor.
 void AddSensorOption(CLI::App& command, std::string& sensor);
+/// --mask.
+void AddMaskOption(CLI::App& command, std::string& mask);
 
 /// An open recording with its camera.
 struct Recording {

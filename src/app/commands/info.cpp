@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "app/commands.hpp"
+#include "app/recording.hpp"
 #include "evo/io/file_description.hpp"
 
 namespace evo::app {
@@ -32,8 +33,7 @@ Command AddInfoCommand(CLI::App& app) {
   parser->add_option("FILE", *path, "Events, trajectory, ground truth, tracks, calibration or the folder of a sequence")
       ->required()
       ->type_name("");
-  parser->add_option("--mask", *mask, "PNG of the sensor's size; events at its black or transparent pixels are ignored")
-      ->type_name("IMAGE");
+  AddMaskOption(*parser, *mask);
   parser->footer(
       "Examples:\n"
       "  evo-run info data_samples/street\n"
