@@ -91,17 +91,17 @@ const std::string& Parameters::CurrentName(const std::string& name) const {
   return found == entries_.end() ? name : found->name;
 }
 
-void Parameters::LoadFile(const std::filesystem::path& path) {
+void Parameters::LoadFile(const std::filesystem::path& path, std::string_view skipped) {
   if (std::filesystem::is_directory(path)) throw ConfigurationError(path.string(), "is a folder; give a YAML file");
   std::ifstream file(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   if (!file) throw ConfigurationError(path.string(), "cannot read this file; give a YAML file");
   if (text.empty()) throw ConfigurationError(path.string(), "is an empty file; give a YAML file");
   if (text.find('\0') != std::string::npos) throw ConfigurationError(path.string(), "is no text; give a YAML file");
-  LoadText(text, path.string());
+  LoadText(text, path.string(), skipped);
 }
 
-void Parameters::LoadText(const std::string& yaml, const std::string& source) {
+void Parameters::LoadText(const std::string& yaml, const std::string& source, std::string_view skipped) {
   const auto place = [&](const YAML::Mark& mark) { return source + ":" + std::to_string(mark.line + 1); };
   YAML::Node root;
   try {
@@ -116,13 +116,14 @@ void Parameters::LoadText(const std::string& yaml, const std::string& source) {
     if (!node.IsMap()) throw ConfigurationError(place(node.Mark()), "expected 'name: value' pairs");
     for (const auto& item : node) {
       const std::string name = prefix + item.first.Scalar();
+      if (!skipped.empty() && name == skipped) continue;
       if (item.second.IsScalar()) {
         const std::string& current = CurrentName(name);
         if (!seen.insert(current).second) {
           const std::string former = name == current ? "" : ", here by its former name '" + name + "'";
           throw ConfigurationError(place(item.first.Mark()), "'" + current + "' comes twice" + former);
         }
-        Assign(name, item.second.Scalar(), place(item.first.Mark()));
+        Set(name, item.second.Scalar(), place(item.first.Mark()));
       } else if (item.second.IsMap()) {
         visit(item.second, name + ".");
       } else {
@@ -137,7 +138,7 @@ void Parameters::Set(std::string_view setting) {
   const auto equals = setting.find('=');
   const std::string where = "--set " + std::string(setting);
   if (equals == std::string_view::npos || equals == 0) throw ConfigurationError(where, "expected name=value");
-  Assign(std::string(setting.substr(0, equals)), std::string(setting.substr(equals + 1)), where);
+  Set(std::string(setting.substr(0, equals)), std::string(setting.substr(equals + 1)), where);
 }
 
 Parameters::Entry* Parameters::Find(std::string_view name) {
@@ -151,7 +152,7 @@ std::string Parameters::Nearest(std::string_view name) const {
   return nearest == entries_.end() ? "" : nearest->name;
 }
 
-void Parameters::Assign(const std::string& given_name, const std::string& text, const std::string& where) {
+void Parameters::Set(const std::string& given_name, const std::string& text, const std::string& where) {
   const std::string& name = CurrentName(given_name);
   if (name != given_name) spdlog::warn("{}: parameter '{}' is now called '{}'", where, given_name, name);
   Entry* const entry = Find(name);

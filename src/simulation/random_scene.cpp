@@ -102,47 +102,14 @@ class SceneDraw {
   DrawnNames names_;
 };
 
-/// Sets the parameters beside the section.
-void SetPlainParameters(const YAML::Node& node, const std::string& prefix, const std::string& file,
-                        Parameters* parameters) {
-  for (const auto& entry : node) {
-    const std::string name = prefix + entry.first.Scalar();
-    if (name == kSection) continue;
-    const std::string where = fmt::format("{}:{}", file, entry.first.Mark().line + 1);
-    if (entry.second.IsMap()) {
-      SetPlainParameters(entry.second, name + ".", file, parameters);
-    } else if (entry.second.IsScalar()) {
-      parameters->Set(name, entry.second.Scalar(), where);
-    } else {
-      throw Error(ErrorKind::kConfiguration, where + ": '" + name + "' needs a single value");
-    }
-  }
-}
-
-/// The file if it has the section; undefined for every other file, of which Parameters::LoadFile says what is wrong.
-YAML::Node ReadRandomScene(const std::filesystem::path& file) {
-  if (!std::filesystem::is_regular_file(file)) return YAML::Node(YAML::NodeType::Undefined);
-  try {
-    const YAML::Node root = YAML::LoadFile(file.string());
-    if (root.IsMap() && root[kSection]) return root;
-    return YAML::Node(YAML::NodeType::Undefined);
-  } catch (const YAML::Exception&) {  // not YAML
-    return YAML::Node(YAML::NodeType::Undefined);
-  }
-}
-
 }  // namespace
 
 std::optional<DrawnNames> LoadScene(const std::filesystem::path& file, std::optional<int> seed, SceneOptions* options,
                                     Parameters* parameters) {
-  const YAML::Node root = ReadRandomScene(file);
-  if (!root.IsDefined()) {
-    parameters->LoadFile(file);
-    if (seed) options->seed = *seed;
-    return {};
-  }
-  SetPlainParameters(root, "", file.string(), parameters);
+  parameters->LoadFile(file, kSection);
   if (seed) options->seed = *seed;
+  const YAML::Node root = YAML::LoadFile(file.string());
+  if (!root.IsMap() || !root[kSection]) return {};
   return SceneDraw(file.string(), static_cast<std::uint64_t>(options->seed), parameters).Draw(root[kSection]);
 }
 

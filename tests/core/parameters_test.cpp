@@ -99,6 +99,13 @@ TEST_F(ParametersTest, RefusesValuesOutOfRangeOrOfTheWrongType) {
   EXPECT_EQ(features, 100);
 }
 
+TEST_F(ParametersTest, ASectionOfTheCallersIsSkipped) {
+  parameters.LoadText("draw: {tracker.features: 1..2}\ntracker: {features: 50}", "a", "draw");
+  EXPECT_EQ(features, 50);
+  EXPECT_THROW(parameters.LoadText("tracker: {draw: {features: 1}}", "a", "draw"), Error) << "at the top only";
+  EXPECT_THROW(parameters.LoadText("draw: 5", "a"), Error);
+}
+
 TEST_F(ParametersTest, SettingsOverrideTheFile) {
   parameters.LoadText("tracker: {features: 50}", "a");
   parameters.Set("tracker.features=60");

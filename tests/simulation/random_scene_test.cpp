@@ -157,6 +157,8 @@ TEST_F(RandomSceneTest, ErrorsNameTheLine) {
   EXPECT_NE(Refusal("draw:\n  sensor.threshold_on: 2 of x.y\n").find("x.y"), std::string::npos);
   EXPECT_NE(Refusal("draw:\n  light:\n    day: {weight: 0, street.light: day}\n").find("weight"), std::string::npos);
   EXPECT_NE(Refusal("draw: 5\n").find("name: value"), std::string::npos);
+  EXPECT_NE(Refusal("scene.seed: 1\nscene: {seed: 2}\ndraw: {road.slope: 0..0.1}\n").find("yaml:2"), std::string::npos)
+      << "comes twice";
 }
 
 }  // namespace

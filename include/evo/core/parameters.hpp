@@ -28,13 +28,14 @@ class Parameters {
   /// Accepts the former name of parameter `name` in files and settings, with a warning on the log at each use.
   void Alias(std::string old_name, std::string_view name);
 
-  void LoadFile(const std::filesystem::path& path);
+  /// `skipped`: the name of a section at the top that the caller reads itself; empty: none.
+  void LoadFile(const std::filesystem::path& path, std::string_view skipped = {});
   /// `source` names the text in messages.
-  void LoadText(const std::string& yaml, const std::string& source);
+  void LoadText(const std::string& yaml, const std::string& source, std::string_view skipped = {});
   /// One setting "name=value", as given by --set.
   void Set(std::string_view setting);
   /// `where` names the place of the setting in messages, for example "run.yaml:3".
-  void Set(const std::string& name, const std::string& text, const std::string& where) { Assign(name, text, where); }
+  void Set(const std::string& name, const std::string& text, const std::string& where);
 
   /// All parameters with their present values as a YAML file that LoadFile accepts; comments give help and range.
   std::string ToYaml() const;
@@ -61,7 +62,6 @@ class Parameters {
   const std::string& CurrentName(const std::string& name) const;
   std::string Nearest(std::string_view name) const;
   /// `where` names the place in messages, for example "run.yaml:3".
-  void Assign(const std::string& name, const std::string& text, const std::string& where);
   static std::string ValueText(const Entry& entry);
   static std::string YamlValue(const Entry& entry);
   static std::string RangeText(const Entry& entry);
