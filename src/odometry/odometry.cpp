@@ -4,6 +4,8 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <iterator>
+#include <set>
 
 #include "evo/core/error.hpp"
 #include "evo/core/parallel.hpp"
@@ -37,6 +39,42 @@ std::vector<Segment> CutSegments(const FrameHandler& handler) {
   }
   segments.back().points = handler.Points();
   return segments;
+}
+
+/// Tracks the frames before the run's first map backwards from it, since a map can only start where the camera moves
+/// far enough. Adds their poses and new points to the first segment.
+void ExtendBackwards(const FrameHandlerOptions& options, const std::vector<Frame>& frames, double focal_px, int threads,
+                     const FrameHandler& handler, std::vector<Segment>* segments) {
+  std::vector<SegmentPose>& poses = segments->front().poses;
+  const int first = poses.front().frame;
+  if (first == 0) return;
+  // The frames of the first map, which overlap, and all before, in reverse order.
+  const int last = handler.first_map_end();
+  const std::vector<Frame> reversed(std::make_reverse_iterator(frames.begin() + last + 1),
+                                    std::make_reverse_iterator(frames.begin()));
+  Bootstrap map{0, last - first, {}, {}};
+  std::set<std::int64_t> tracks;
+  for (int frame = last; frame >= first; --frame) {
+    map.T_cam_world.push_back(handler.Pose(frame));
+    for (const Feature& feature : frames[frame].features) tracks.insert(feature.track);
+  }
+  std::vector<Point>& points = segments->back().points;
+  std::ranges::copy_if(points, std::back_inserter(map.points),
+                       [&](const Point& point) { return tracks.contains(point.track); });
+  FrameHandler backward(options, reversed, focal_px, threads);
+  backward.Continue(map);
+
+  std::vector<SegmentPose> earlier;
+  for (int frame = 0; frame < first; ++frame) {
+    const FrameRecord& record = backward.records()[last - frame];
+    if (record.segment >= 0) earlier.push_back({frame, backward.Pose(last - frame), record.inliers});
+  }
+  poses.insert(poses.begin(), earlier.begin(), earlier.end());
+  std::set<std::int64_t> known;
+  for (const Point& point : points) known.insert(point.track);
+  std::ranges::copy_if(backward.Points(), std::back_inserter(points),
+                       [&](const Point& point) { return !known.contains(point.track); });
+  spdlog::info("odometry: tracked backwards from the first map: {} of {} frames", earlier.size(), first);
 }
 
 /// The motion of the world by which the refinement of a segment moved its last frame with a pose before and after.
@@ -127,6 +165,7 @@ OdometryResult RunOdometry(const events::Tracks& tracks, const geometry::Camera&
   result.losses = handler.losses();
 
   std::vector<Segment> segments = CutSegments(handler);
+  ExtendBackwards(options.frame_handler, frames, camera.focal_px(), threads, handler, &segments);
   if (options.final_refinement.enabled) {
     ThreadPool pool(threads);
     const auto refinement_progress = [&](double ratio) { progress(OdometryStage::kRefinement, ratio); };

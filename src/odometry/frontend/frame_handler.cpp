@@ -44,6 +44,16 @@ void FrameHandler::Run(const std::function<void(double)>& progress) {
   ApplyMapUpdates(kAllFrames);
 }
 
+void FrameHandler::Continue(const Bootstrap& map) {
+  StartSegment(map);
+  for (int index = map.last + 1; index < static_cast<int>(frames_.size()); ++index) {
+    ApplyMapUpdates(index - options_.lag);
+    const double lost_s = std::abs(ToSeconds(frames_[index].t - frames_[last_tracked_].t));
+    if (!TrackFrame(index) && lost_s > kMaxPredictionSeconds) break;
+  }
+  ApplyMapUpdates(kAllFrames);
+}
+
 geometry::SE3 FrameHandler::Pose(int index) const {
   const KeyFramePose& pose = records_[index].pose;
   return pose.T_cam_key * key_poses_[pose.key_frame];
@@ -68,7 +78,13 @@ void FrameHandler::ProcessFrame(int index) {
     losses_.push_back(last_failure_);
     bootstrapper_.Reset();
   }
-  if (auto bootstrap = bootstrapper_.Add(index)) StartSegment(std::move(*bootstrap));  // equations 9-13
+  auto bootstrap = bootstrapper_.Add(index);  // equations 9-13
+  if (!bootstrap) return;
+  ApplyMapUpdates(kAllFrames);  // so that no update of the old segment arrives in the new one
+  if (last_tracked_ >= 0) Transform(AlignSegment(*bootstrap), &*bootstrap);
+  spdlog::info("odometry: map of {} points from the frames at {} s and {} s", bootstrap->points.size(),
+               FormatTime(frames_[bootstrap->first].t), FormatTime(frames_[bootstrap->last].t));
+  StartSegment(*bootstrap);
 }
 
 void FrameHandler::ApplyMapUpdates(int index) {
@@ -108,7 +124,8 @@ bool FrameHandler::TrackFrame(int index) {
   const Frame& frame = frames_[index];
   const LandmarkMatches matches = MatchLandmarks(frame);
   const geometry::SE3 T_cam_world_last = Pose(last_tracked_);
-  const bool velocity_is_recent = ToSeconds(frame.t - frames_[last_tracked_].t) <= kMaxPredictionSeconds;
+  const bool velocity_is_recent =
+      std::abs(ToSeconds(frame.t - frames_[last_tracked_].t)) <= kMaxPredictionSeconds;  // time may run backwards
   PoseEstimate estimate = optimizer_.Optimize(
       matches.observations, velocity_is_recent ? PredictPose(frame.t) : T_cam_world_last);  // equations 1-5
   if (!optimizer_.Accepts(estimate)) estimate = optimizer_.Optimize(matches.observations, T_cam_world_last);
@@ -167,12 +184,9 @@ bool FrameHandler::IsKeyFrame(int index, const geometry::SE3& T_cam_world, const
   return T_cam_key.translation().norm() > options.translation * MeasureSceneDepth(std::move(depths)).median;
 }
 
-void FrameHandler::StartSegment(Bootstrap bootstrap) {
-  ApplyMapUpdates(kAllFrames);  // so that no update of the old segment arrives in the new one
-  if (last_tracked_ >= 0) Transform(AlignSegment(bootstrap), &bootstrap);
+void FrameHandler::StartSegment(const Bootstrap& bootstrap) {
+  if (bootstraps_.empty()) first_map_end_ = bootstrap.last;
   bootstraps_.push_back(bootstrap.first);
-  spdlog::info("odometry: map of {} points from the frames at {} s and {} s", bootstrap.points.size(),
-               FormatTime(frames_[bootstrap.first].t), FormatTime(frames_[bootstrap.last].t));
   landmarks_.clear();
   for (const Point& point : bootstrap.points) landmarks_[point.track] = point.position;
   for (int index = bootstrap.first; index <= bootstrap.last; ++index) {

@@ -34,6 +34,9 @@ class FrameHandler {
 
   /// Processes all frames. `progress` gets the ratio that is done.
   void Run(const std::function<void(double)>& progress);
+  /// In place of Run(): tracks the frames after those of `map` against it, until the pose is lost for a while. The map
+  /// need not begin at the first frame.
+  void Continue(const Bootstrap& map);
 
   const std::vector<FrameRecord>& records() const { return records_; }
   /// T_cam_world of a frame that has a pose.
@@ -41,6 +44,8 @@ class FrameHandler {
   const std::vector<int>& key_frames() const { return key_frames_; }
   /// First frames of all segments.
   const std::vector<int>& bootstraps() const { return bootstraps_; }
+  /// Last frame of the first map.
+  int first_map_end() const { return first_map_end_; }
   /// Where the pose was lost, in order of time.
   const std::vector<TrackingLoss>& losses() const { return losses_; }
   /// The points of all segments, complete after Run().
@@ -71,7 +76,7 @@ class FrameHandler {
   /// The pose at `t` by constant velocity.
   geometry::SE3 PredictPose(TimeNs t) const;
   bool IsKeyFrame(int index, const geometry::SE3& T_cam_world, const LandmarkMatches& matches) const;
-  void StartSegment(Bootstrap bootstrap);
+  void StartSegment(const Bootstrap& bootstrap);
   /// Where a new segment lies in the world, by its shared tracks with the map or else by the last velocity.
   Similarity AlignSegment(const Bootstrap& bootstrap) const;
   /// Records a frame's pose relative to the newest key frame, makes the frame a key frame if `message` says so, and
@@ -89,6 +94,7 @@ class FrameHandler {
   std::vector<int> key_frames_;           // indices of the frames
   std::vector<FrameRecord> records_;
   std::vector<int> bootstraps_;
+  int first_map_end_ = -1;
   std::vector<TrackingLoss> losses_;
   TrackingLoss last_failure_;
   bool tracking_ = false;
