@@ -17,6 +17,10 @@ TimeNs HalfWindow(const Eigen::Vector2d& flow, double motion_px, const TrackerOp
   return FromSeconds(0.5 * std::min(std::max(window_s, options.min_window_s), options.max_window_s));
 }
 
+TimeNs DoubledHalfWindow(TimeNs half_window, const TrackerOptions& options) {
+  return std::min(2 * half_window, FromSeconds(0.5 * options.max_window_s));
+}
+
 TimeNs FeatureHalfWindow(const Eigen::Vector2d& flow, const EgoMotion& ego_motion, const TrackerOptions& options) {
   const TimeNs by_motion = HalfWindow(flow, options.window_motion_px, options);
   const double acceleration_px_s2 = ego_motion.jacobians().focal_px() * ego_motion.typical_angular_acceleration();

@@ -16,4 +16,7 @@ TimeNs HalfWindow(const Eigen::Vector2d& flow, double motion_px, const TrackerOp
 /// feature from a straight path by `window_curvature_px` at most.
 TimeNs FeatureHalfWindow(const Eigen::Vector2d& flow, const EgoMotion& ego_motion, const TrackerOptions& options);
 
+/// Half of a window of twice the length, for a patch whose window has too few events; limited by the options.
+TimeNs DoubledHalfWindow(TimeNs half_window, const TrackerOptions& options);
+
 }  // namespace evo::tracking

@@ -87,7 +87,7 @@ bool FeatureAligner::GatherEvents(const events::EventHistory& history, TimeNs t,
   };
   alignment->half_window = FeatureHalfWindow(flow, ego_motion_, options_);
   if (!has_events(options_.min_events)) {
-    alignment->half_window = std::min(2 * alignment->half_window, FromSeconds(0.5 * options_.max_window_s));
+    alignment->half_window = DoubledHalfWindow(alignment->half_window, options_);
     const bool is_established = feature.frames >= kEstablishedFrames;
     if (!has_events(is_established ? options_.min_events_established : options_.min_events)) return false;
   }

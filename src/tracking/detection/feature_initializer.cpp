@@ -136,10 +136,16 @@ std::optional<FeatureInitializer::Candidate> FeatureInitializer::MakeCandidate(
   if (!EstimateFlow(history, t, position, options_, &flow)) return std::nullopt;
   if (!ego_motion_.MayBeStatic({position, flow})) return std::nullopt;
   thread_local events::LocalEvents events;
-  const TimeNs half_window = FeatureHalfWindow(flow, ego_motion_, options_);
-  const auto radius = static_cast<double>(options_.patch_radius_px);
-  history.Gather({t, position.x(), position.y(), flow.x(), flow.y(), radius, half_window}, &events);
-  if (events.size() < static_cast<std::size_t>(options_.min_events)) return std::nullopt;
+  TimeNs half_window = FeatureHalfWindow(flow, ego_motion_, options_);
+  const auto has_events = [&] {
+    const auto radius = static_cast<double>(options_.patch_radius_px);
+    history.Gather({t, position.x(), position.y(), flow.x(), flow.y(), radius, half_window}, &events);
+    return events.size() >= static_cast<std::size_t>(options_.min_events);
+  };
+  if (!has_events()) {
+    half_window = DoubledHalfWindow(half_window, options_);
+    if (!has_events()) return std::nullopt;
+  }
   const double inverse_depth = ego_motion_.EstimateInverseDepth({position, flow});
   const Eigen::Vector2d gradient =
       FitInverseDepthGradient(depths, {position, inverse_depth}).value_or(Eigen::Vector2d::Zero());

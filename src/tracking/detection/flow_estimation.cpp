@@ -70,9 +70,12 @@ bool EstimateFlow(const events::EventHistory& history, TimeNs t, const Eigen::Ve
   const int radius_px = options.patch_radius_px;
   const FlowEstimator estimator =
       MakeEstimator(radius_px, kFineCellPx, options.fine_sigma_px, kFineConvergencePx, options);
-  const TimeNs half_window = HalfWindow(*flow, options.window_motion_px, options);
-  return GatherForFlow(history, MakePatch(t, position, *flow, radius_px, half_window), options, &events) &&
-         estimator.Refine(events, ToSeconds(half_window), flow) > 0.0;
+  TimeNs half_window = HalfWindow(*flow, options.window_motion_px, options);
+  if (!GatherForFlow(history, MakePatch(t, position, *flow, radius_px, half_window), options, &events)) {
+    half_window = DoubledHalfWindow(half_window, options);
+    if (!GatherForFlow(history, MakePatch(t, position, *flow, radius_px, half_window), options, &events)) return false;
+  }
+  return estimator.Refine(events, ToSeconds(half_window), flow) > 0.0;
 }
 
 }  // namespace evo::tracking
