@@ -102,7 +102,8 @@ AutoMask Find(const EventColumns& events, const AutoMaskOptions& options = {}) {
     if (part.empty()) throw Error(ErrorKind::kNothingToDo, "no events");
     class Part : public VectorReader {
      public:
-      Part(const EventColumns& part, TimeNs first, TimeNs last) : VectorReader(part, 5000), first_(first), last_(last) {}
+      Part(const EventColumns& part, TimeNs first, TimeNs last)
+          : VectorReader(part, 5000), first_(first), last_(last) {}
       TimeNs first_stamp() const override { return first_; }
       TimeNs last_stamp() const override { return last_; }
 
@@ -186,11 +187,12 @@ TEST(AutoMask, LanesOfAStraightDriveAreNone) {
   // A road without texture between kerbs, with two lanes, whose lines keep their place in the image. The sky is empty.
   const auto slope = [](int x, int y) { return (x - kFocusX) / std::max(1.0, y - kFocusY); };
   NoiseStream stream(6);
-  AddFlow({.region = [&](int x, int y) {
-            const double s = slope(x, y);
-            const bool is_sky = y < kFocusY && std::abs(x - kFocusX) < kFocusY - y;
-            return !is_sky && (y < kFocusY || std::abs(s) > 2.0 || std::abs(std::abs(s) - 0.7) < 0.08);
-          }},
+  AddFlow({.region =
+               [&](int x, int y) {
+                 const double s = slope(x, y);
+                 const bool is_sky = y < kFocusY && std::abs(x - kFocusX) < kFocusY - y;
+                 return !is_sky && (y < kFocusY || std::abs(s) > 2.0 || std::abs(std::abs(s) - 0.7) < 0.08);
+               }},
           &stream);
   stream.AddShotNoise(kWidth, kHeight, 6.0, 0.5);
   ExpectNothing(Find(stream.Sorted()), "no edge");

@@ -11,8 +11,9 @@ namespace evo::events {
 /// the least structure passes. A bonnet and a frame are smooth; a free shape would follow the gaps of any texture.
 class EdgeSearch {
  public:
-  static constexpr int kTolerance = 1;           // px by which an edge may differ from its curve
-  static constexpr int kFirstDepth = 12;         // px
+  static constexpr int kTolerance = 1;    // px by which an edge may differ from its curve
+  static constexpr int kFirstDepth = 12;  // px
+
   EdgeSearch(const SideView& view, const SidePoint& focus);
 
   /// By block: the depth of the first covered pixel.
