@@ -1,6 +1,7 @@
 #include "app/recording.hpp"
 
 #include <charconv>
+#include <utility>
 
 #include "evo/core/error.hpp"
 #include "evo/io/calibration_io.hpp"
@@ -41,17 +42,28 @@ events::Interval ParseInterval(const RecordingArguments& arguments) {
 
 events::IgnoredPixels ReadIgnoredPixels(const RecordingArguments& arguments, int width, int height) {
   events::IgnoredPixels ignored;
-  if (!arguments.mask.empty()) ignored.masked = io::ReadMask(arguments.mask, width, height);
+  if (!arguments.mask.empty() && !IsAutoMask(arguments.mask))
+    ignored.masked = io::ReadMask(arguments.mask, width, height);
   if (!arguments.hot_pixels.empty()) ignored.hot = io::ReadHotPixels(arguments.hot_pixels, width, height);
   return ignored;
 }
 
+events::AutoMask FindMask(const std::filesystem::path& events, const events::Interval& interval,
+                          const geometry::Camera& camera, const events::AutoMaskOptions& options, RunRecord* record) {
+  return record->Time("find_mask", [&] {
+    return events::FindAutoMask(
+        [&](const events::Interval& slice) { return io::OpenEvents(events, slice, camera.width(), camera.height()); },
+        interval, camera.width(), camera.height(), options);
+  });
+}
+
 }  // namespace
 
-void AddMaskOption(CLI::App& command, std::string& mask) {
-  command.add_option("--mask", mask, "PNG of the sensor's size; events at its black or transparent pixels are ignored")
-      ->type_name("IMAGE");
+void AddMaskOption(CLI::App& command, std::string& mask, const std::string& source) {
+  command.add_option("--mask", mask, source)->type_name("IMAGE");
 }
+
+bool IsAutoMask(const std::string& mask) { return mask == "auto"; }
 
 void AddSensorOption(CLI::App& command, std::string& sensor) {
   command.add_option("--sensor", sensor, "Size of the sensor in px for a calibration without one; default: 240x180")
@@ -74,7 +86,12 @@ void AddRecordingOptions(CLI::App& command, RecordingArguments& arguments) {
       ->type_name("S");
   command.add_option("--to", arguments.to, "End of the interval in s after the first event; default: the last event")
       ->type_name("S");
-  AddMaskOption(command, arguments.mask);
+  AddMaskOption(command, arguments.mask,
+                "PNG of the sensor's size; events at its black or transparent pixels are ignored. auto: finds what is "
+                "fixed to a driving camera and covers the scene, such as a bonnet");
+  command
+      .add_option("--save-mask", arguments.save_mask, "Write the mask to this PNG, which can be given back as --mask")
+      ->type_name("FILE");
   command
       .add_option("--hot-pixels", arguments.hot_pixels,
                   "Text file of rows 'x y', as --save-hot-pixels writes it: pixels whose events are ignored")
@@ -102,15 +119,33 @@ Recording OpenRecording(const RecordingArguments& arguments, const events::Event
     calibration = *files.calibration;
   }
   geometry::Camera camera = OpenCamera(calibration, arguments.sensor);
-  const auto ignored = ReadIgnoredPixels(arguments, camera.width(), camera.height());
+  if (!arguments.save_mask.empty() && arguments.mask.empty()) {
+    throw Error(ErrorKind::kUsage, "--save-mask needs a mask; give --mask auto or --mask IMAGE");
+  }
+  auto ignored = ReadIgnoredPixels(arguments, camera.width(), camera.height());
+  std::string auto_mask;
+  if (IsAutoMask(arguments.mask)) {
+    events::AutoMask found = FindMask(files.events, interval, camera, options.auto_mask, record);
+    auto_mask = found.summary;
+    record->manifest.mask = "auto: " + auto_mask;
+    ignored.masked = std::move(found.masked);
+  }
   auto reader = std::make_unique<events::FilteredEventReader>(
       io::OpenEvents(files.events, interval, camera.width(), camera.height()), camera.width(), camera.height(), options,
       ignored);
   record->AddLargeInput("events", files.events);
   record->AddInput("calibration", calibration);
-  if (!arguments.mask.empty()) record->AddInput("mask", arguments.mask);
+  if (!arguments.mask.empty() && !IsAutoMask(arguments.mask)) record->AddInput("mask", arguments.mask);
   if (!arguments.hot_pixels.empty()) record->AddInput("hot_pixels", arguments.hot_pixels);
-  return {camera, files.events, std::move(reader), interval, files.ground_truth, arguments.save_hot_pixels};
+  return {camera,
+          files.events,
+          std::move(reader),
+          interval,
+          files.ground_truth,
+          arguments.save_hot_pixels,
+          arguments.save_mask,
+          std::move(ignored.masked),
+          auto_mask};
 }
 
 std::string SequenceName(const std::filesystem::path& file) {

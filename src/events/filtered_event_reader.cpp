@@ -31,6 +31,7 @@ struct FilteredEventReader::Changes {
 void Register(Parameters& parameters, EventFilterOptions& options) {
   Register(parameters, options.hot_pixels);
   Register(parameters, options.flicker);
+  Register(parameters, options.auto_mask);
 }
 
 FilteredEventReader::FilteredEventReader(std::unique_ptr<EventReader> reader, int width, int height,

@@ -177,6 +177,7 @@ void WriteManifest(const std::filesystem::path& path, const Manifest& manifest) 
   }
   json["counts"] = Json::object();
   for (const auto& [name, count] : manifest.counts) json["counts"][name] = count;
+  if (!manifest.mask.empty()) json["mask"] = manifest.mask;
   if (!manifest.hot_pixels.empty()) json["hot_pixels"] = HotPixelList(manifest.hot_pixels);
   json["rebootstraps"] = Json::array();
   for (const TimeNs stamp : manifest.rebootstraps) json["rebootstraps"].push_back(FormatTime(stamp));

@@ -42,6 +42,28 @@ TEST_F(EventFiltersTest, WhiteMaskChangesNothing) {
   ExpectSameBytes("without", "with", {"tracks.txt", "lifetime.csv"});
 }
 
+TEST_F(EventFiltersTest, SavedMaskCanBeGivenBack) {
+  const std::string saved = Quote(folder / "saved.png");
+  ASSERT_EQ(Run(words_ + WriteMask(120) + " --save-mask " + saved + Out("first")), 0) << err;
+  ASSERT_EQ(Run(words_ + " --mask " + saved + Out("second")), 0) << err;
+  ExpectSameBytes("first", "second", {"tracks.txt", "lifetime.csv"});
+  EXPECT_EQ(Run(words_ + " --save-mask " + saved + Out("none")), 2);
+  EXPECT_NE(err.find("--save-mask needs a mask"), std::string::npos) << err;
+}
+
+TEST_F(EventFiltersTest, AutoMaskSaysWhyThereIsNone) {
+  const std::string saved = Quote(folder / "saved.png");
+  ASSERT_EQ(Run(words_ + " --mask auto --save-mask " + saved + Out("auto")), 0) << err;
+  const std::string summary = "auto: nothing: 1.1 s are too short to tell";
+  EXPECT_NE(out.find("mask       " + summary + '\n'), std::string::npos) << out;
+  EXPECT_EQ(Manifest("auto")["mask"], summary);
+  EXPECT_EQ(Manifest("auto")["inputs"].size(), 2U);
+  ASSERT_EQ(Run(words_ + " --mask " + saved + Out("given")), 0) << err;
+  ExpectSameBytes("auto", "given", {"tracks.txt", "lifetime.csv"});
+  EXPECT_EQ(Run("info --mask auto " + Quote(Sample())), 2);
+  EXPECT_NE(err.find("--save-mask FILE"), std::string::npos) << err;
+}
+
 TEST_F(EventFiltersTest, SavedHotPixelsCanBeGivenBack) {
   const std::string file = Quote(folder / "hot.txt");
   ASSERT_EQ(Run(words_ + " --save-hot-pixels " + file + Out("found")), 0) << err;

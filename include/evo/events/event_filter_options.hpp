@@ -1,6 +1,7 @@
 #pragma once
 
 #include "evo/core/parameters.hpp"
+#include "evo/events/auto_mask.hpp"
 #include "evo/events/flicker.hpp"
 #include "evo/events/hot_pixels.hpp"
 
@@ -10,6 +11,7 @@ namespace evo::events {
 struct EventFilterOptions {
   HotPixelOptions hot_pixels;
   FlickerOptions flicker;
+  AutoMaskOptions auto_mask;
 };
 
 /// Adds `events.*`.

@@ -33,6 +33,7 @@ struct Manifest {
   std::vector<ManifestInput> inputs;
   std::vector<std::pair<std::string, std::int64_t>> counts;  ///< "events", "tracks", "frames", ...
   std::vector<StageTime> stages;
+  std::string mask;                                  ///< what --mask auto found; written, not read back
   std::vector<events::HotPixel> hot_pixels;          ///< of the filters; written, not read back
   std::optional<double> recorded_s;                  ///< time from the first tracked event frame to the last (s)
   std::vector<TimeNs> rebootstraps;                  ///< stamps of the frames at which the odometry reinitialised

@@ -6,6 +6,7 @@
 
 #include "app/commands.hpp"
 #include "app/recording.hpp"
+#include "evo/core/error.hpp"
 #include "evo/io/file_description.hpp"
 
 namespace evo::app {
@@ -14,6 +15,11 @@ namespace {
 
 void RunInfo(const std::string& path, const std::string& mask_path) {
   std::optional<io::Mask> mask;
+  if (IsAutoMask(mask_path)) {
+    throw Error(ErrorKind::kUsage,
+                "--mask auto needs a calibrated sensor, which info does not ask for; find the mask with "
+                "evo-run track --mask auto --save-mask FILE and give the file");
+  }
   if (!mask_path.empty()) mask = io::ReadMask(mask_path);
   const io::FileDescription description = io::DescribeFile(path, mask ? &*mask : nullptr);
   std::size_t width = 0;
@@ -33,7 +39,7 @@ Command AddInfoCommand(CLI::App& app) {
   parser->add_option("FILE", *path, "Events, trajectory, ground truth, tracks, calibration or the folder of a sequence")
       ->required()
       ->type_name("");
-  AddMaskOption(*parser, *mask);
+  AddMaskOption(*parser, *mask, "PNG of the sensor's size; events at its black or transparent pixels are ignored");
   parser->footer(
       "Examples:\n"
       "  evo-run info data_samples/street\n"

@@ -93,7 +93,9 @@ Command AddRunCommand(CLI::App& app) {
       "  evo-run run --events data_samples/street --out out/street\n"
       "  evo-run run --events outdoor_day2_data.hdf5 --calibration camchain-imucam-outdoor_day.yaml "
       "--ground-truth outdoor_day2_gt.hdf5 --from 12 --to 72 --out out/day2\n"
-      "  evo-run run --events data_samples/night --config mine.yaml --set tracker.features=200 --out out/night");
+      "  evo-run run --events data_samples/night --config mine.yaml --set tracker.features=200 --out out/night\n"
+      "  evo-run run --events outdoor_day2_data.hdf5 --calibration camchain-imucam-outdoor_day.yaml --mask auto "
+      "--save-mask bonnet.png --out out/day2_masked");
   return {parser, [arguments](const auto& command_line) { RunAll(*arguments, command_line); }};
 }
 

@@ -46,7 +46,9 @@ Command AddTrackCommand(CLI::App& app) {
       "  evo-run track --events outdoor_day2_data.hdf5 --calibration camchain-imucam-outdoor_day.yaml --from 12 --to "
       "72 "
       "--draw-every 5 --out out/day2\n"
-      "  evo-run track --events data_samples/street --set tracker.method=klt --out out/street_klt");
+      "  evo-run track --events data_samples/street --set tracker.method=klt --out out/street_klt\n"
+      "  evo-run track --events outdoor_day2_data.hdf5 --calibration camchain-imucam-outdoor_day.yaml --mask auto "
+      "--save-mask bonnet.png --out out/day2_masked");
   return {parser, [arguments](const auto& command_line) { RunTrack(*arguments, command_line); }};
 }
 

@@ -17,10 +17,12 @@
 #include "evo/core/output_file.hpp"
 #include "evo/core/progress.hpp"
 #include "evo/events/flicker.hpp"
+#include "evo/events/grey_image.hpp"
 #include "evo/io/pixel_files.hpp"
 #include "evo/report/evaluation_tables.hpp"
 #include "evo/report/figures.hpp"
 #include "evo/report/latex_tables.hpp"
+#include "evo/report/png.hpp"
 #include "evo/report/terminal_summary.hpp"
 
 namespace evo::app {
@@ -79,7 +81,7 @@ void WriteLifetimes(const StageRun& run, const std::string& sequence, const eval
 }
 
 void RecordCounts(const TrackingOutcome& outcome, StageRun* run) {
-  const auto& [result, lifetimes, observations, filters, hot_pixels] = outcome;
+  const auto& [result, lifetimes, observations, filters, hot_pixels, mask] = outcome;
   RunRecord& record = run->record;
   record.manifest.recorded_s = ToSeconds(result.frames.back() - result.frames.front());
   record.AddCount("threads", static_cast<std::size_t>(run->pool.size()));
@@ -114,7 +116,11 @@ std::string FormatFilters(const TrackingOutcome& outcome) {
     return 100.0 * static_cast<double>(events) / static_cast<double>(std::max<std::uint64_t>(1, filters.events));
   };
   std::string text;
-  if (filters.masked_pixels > 0) {
+  if (!outcome.auto_mask.empty()) {
+    const std::string of_events =
+        filters.masked_pixels > 0 ? fmt::format(", {:.2f} % of the events", percent(filters.masked_events)) : "";
+    text += fmt::format("mask       auto: {}{}\n", outcome.auto_mask, of_events);
+  } else if (filters.masked_pixels > 0) {
     text += fmt::format("mask       {} pixels, {:.2f} % of the events\n", filters.masked_pixels,
                         percent(filters.masked_events));
   }
@@ -122,6 +128,18 @@ std::string FormatFilters(const TrackingOutcome& outcome) {
     text += fmt::format("hot pixels {}, {:.2f} % of the events\n", outcome.hot_pixels, percent(filters.hot_events));
   }
   return text + FormatFlicker(filters.flicker);
+}
+
+/// Black where events are ignored, as --mask reads it.
+void SaveMask(const Recording& recording) {
+  const int width = recording.camera.width();
+  const int height = recording.camera.height();
+  events::GreyImage image{width, height, {}};
+  image.grey.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 255);
+  for (std::size_t i = 0; i < recording.masked.size(); ++i) {
+    if (recording.masked[i] != 0) image.grey[i] = 0;
+  }
+  report::WritePng(recording.save_mask, image);
 }
 
 }  // namespace
@@ -146,6 +164,8 @@ TrackingOutcome RunTrackingStage(const tracking::TrackerOptions& options, Record
   if (!recording->save_hot_pixels.empty()) {
     io::WriteHotPixels(recording->save_hot_pixels, recording->reader->hot_pixels());
   }
+  outcome.auto_mask = recording->auto_mask;
+  if (!recording->save_mask.empty()) SaveMask(*recording);
   const auto& frames = outcome.result.frames;
   outcome.lifetimes = results.Lifetimes(frames);
   outcome.observations = results.observations();

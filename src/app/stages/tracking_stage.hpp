@@ -17,6 +17,7 @@ struct TrackingOutcome {
   std::size_t observations = 0;
   events::FilterStatistics filters;
   std::size_t hot_pixels = 0;
+  std::string auto_mask;  ///< of the recording
 };
 
 /// Files of the tracking stage in the output folder.
