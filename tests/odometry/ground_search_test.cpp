@@ -64,6 +64,27 @@ TEST(GroundSearch, TakesTheLowerOfTwoPlanes) {
   EXPECT_NEAR(observations.Search().log_inverse_heights[0], -std::log(kHeight), 0.03);
 }
 
+/// A bonnet mirrors what stands above the camera: its images seem to lie below the ground, at any depth.
+TEST(GroundSearch, FindsTheGroundBesideMirrorImages) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    Observations observations(seed);
+    observations.AddRoad(60, 0.02);
+    observations.AddObstacles(20);
+    for (int i = 0; i < 120; ++i) observations.Add(observations.Uniform(1.0, 15.0), observations.Uniform(-3.0, 3.0));
+    const FoundGround ground = observations.Search();
+    EXPECT_GT(ground.evidence, 10.0) << seed;
+    for (const double log : ground.log_inverse_heights) EXPECT_NEAR(log, -std::log(kHeight), 0.02) << seed;
+  }
+}
+
+TEST(GroundSearch, HasNoEvidenceInMirrorImagesAlone) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    Observations observations(seed);
+    for (int i = 0; i < 120; ++i) observations.Add(observations.Uniform(1.0, 15.0), observations.Uniform(-3.0, 3.0));
+    EXPECT_LT(observations.Search().evidence, 10.0) << seed;
+  }
+}
+
 TEST(GroundSearch, HasNoEvidenceWithoutAGround) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     Observations observations(seed);

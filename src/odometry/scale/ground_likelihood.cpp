@@ -21,7 +21,8 @@ double Normal(double error, double sigma) {
 }
 
 double OffGround(double error, double sigma) {
-  return (1.0 - kGroundRatio) * (error < -kBelowSigmas * sigma ? kBelowRatio : 1.0);
+  const bool is_below = error < -kBelowSigmas * sigma && error > -kMaxBelowGround;
+  return (1.0 - kGroundRatio) * (is_below ? kBelowRatio : 1.0);
 }
 
 }  // namespace

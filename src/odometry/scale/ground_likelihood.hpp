@@ -15,8 +15,12 @@ struct GroundObservation {
   double lateral_ratio = 0.0;   ///< offset to the right of the path over the depth below it
 };
 
+/// Of log(inverse height), up to which a track counts as below the ground. What a bonnet or a wet road mirrors seems to
+/// lie deeper, down to what stands above the camera.
+inline constexpr double kMaxBelowGround = 1.0;
+
 /// How much more likely a track is if there is a ground than if there is none: a track lies on the ground or above it,
-/// on a kerb, a wheel, a wall. Only gross errors lie below it.
+/// on a kerb, a wheel, a wall. Only gross errors and mirror images lie below it.
 class GroundLikelihood {
  public:
   /// Learns where tracks are without regard to the ground.

@@ -60,9 +60,14 @@ class HeightGrid {
       const auto far = [&](double error) { return static_cast<float>(std::log(likelihood_.Ratio(i, error, sigma))); };
       const float above = far(kReachSigmas * sigma);
       const float below = far(-kReachSigmas * sigma);
+      const float deep = far(-std::max(kMaxBelowGround, kReachSigmas * sigma));
       for (std::size_t s = 0; s < states_; ++s) {
         const double error = log - Log(s);
-        score[s] += std::abs(error) < kReachSigmas * sigma ? far(error) : error > 0.0 ? above : below;
+        if (std::abs(error) < kReachSigmas * sigma) {
+          score[s] += far(error);
+        } else {
+          score[s] += error > 0.0 ? above : error > -kMaxBelowGround ? below : deep;
+        }
       }
     }
     return scores;
