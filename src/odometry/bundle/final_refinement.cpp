@@ -20,6 +20,7 @@ namespace {
 // Inlier ratio of a pose between two of the bundle: while the camera stands, the majority of points may be on other
 // cars.
 constexpr double kMinInlierRatioBetween = 0.35;
+constexpr double kMinRelativeDecrease = 1e-3;  // of the cost in an iteration; less moves no pose noticeably
 constexpr double kAdjustmentTime = 0.9;  // ratio of the whole refinement, for the progress
 
 /// Removes the observations of tracks with more outliers than inliers: objects that move by themselves, and slips.
@@ -37,7 +38,9 @@ void RemoveOutlierTracks(BundleProblem* problem) {
 BundleOptions AdjustInRounds(const FinalRefinementOptions& options, const std::vector<double>& times_s,
                              const std::function<void(double)>& progress, ThreadPool* pool, BundleProblem* problem) {
   const double drift = options.drift_variance_ratio;
-  BundleOptions bundle_options{.max_iterations = options.iterations, .drift_variance_ratio = drift};
+  BundleOptions bundle_options{.max_iterations = options.iterations,
+                               .drift_variance_ratio = drift,
+                               .min_relative_decrease = kMinRelativeDecrease};
   for (int round = 0; round < options.rounds; ++round) {
     if (options.track_noise && round > 0) SetTrackWeights(drift, problem);
     const double sigma_px = EstimateNoise(ReprojectionInnovations(*problem, drift));
