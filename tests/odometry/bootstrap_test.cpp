@@ -129,6 +129,23 @@ TEST(Bootstrapper, StartsWhereMostTracksAreObserved) {
   EXPECT_GE(begin(0.5), 5);
 }
 
+/// All tracks end after seven frames, in which the image moves about 7 px.
+TEST(Bootstrapper, StartsFromManyShortTracksBelowTheDisparity) {
+  const auto first_map = [](int points, double step) {
+    Recording recording = Record({.points = points, .step = {step, 0.0, 0.0}}, 1);
+    for (std::size_t i = 0; i < recording.frames.size(); ++i) {
+      const auto life = static_cast<std::int64_t>(i / 7);
+      for (Feature& feature : recording.frames[i].features) feature.track += 1000 * life;
+    }
+    return FirstMap(recording);
+  };
+  const auto bootstrap = first_map(100, 0.05);
+  ASSERT_TRUE(bootstrap);
+  EXPECT_GT(bootstrap->T_cam_world.back().Inverse().translation().normalized().x(), std::cos(4.0 * kDegree));
+  EXPECT_FALSE(first_map(40, 0.05));   // little motion of few tracks proves nothing
+  EXPECT_FALSE(first_map(100, 0.01));  // hardly any motion
+}
+
 TEST(Bootstrapper, RejectsAStandingCamera) {
   for (std::uint32_t seed = 1; seed <= 10; ++seed) {
     std::string failure_reason;

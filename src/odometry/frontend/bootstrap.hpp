@@ -37,6 +37,9 @@ class Bootstrapper {
 
  private:
   std::optional<Bootstrap> TryPair(int first, int last);
+  /// Tries the last pair of a candidate whose tracks end before the image has moved far: behind another car, or slowly
+  /// past near things. The parallax decides.
+  std::optional<Bootstrap> TryLastPair(int first, int last);
   std::optional<Bootstrap> BuildMap(int first, int last, const std::vector<FeaturePair>& pairs,
                                     const geometry::SE3& T_2_1, const std::vector<bool>& inliers);
   /// Estimates the poses of the frames after the first against the points. False if one of them is not accepted.
