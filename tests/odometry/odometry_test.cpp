@@ -60,6 +60,16 @@ OdometryResult Estimate(const Drive& drive, const OdometryOptions& options = {},
   return RunOdometry(drive.tracks, DriveCamera(), options, threads, kNoProgress);
 }
 
+void ExpectEqual(const OdometryResult& a, const OdometryResult& b) {
+  ASSERT_EQ(a.trajectory.size(), b.trajectory.size());
+  for (std::size_t i = 0; i < a.trajectory.size(); ++i) {
+    EXPECT_EQ(a.trajectory[i].t, b.trajectory[i].t);
+    EXPECT_EQ(a.trajectory[i].T_world_cam.Matrix(), b.trajectory[i].T_world_cam.Matrix()) << i;
+  }
+  ASSERT_EQ(a.points.size(), b.points.size());
+  for (std::size_t i = 0; i < a.points.size(); ++i) EXPECT_EQ(a.points[i].position, b.points[i].position);
+}
+
 TEST(Odometry, TracksADriveWithBumpsStopAndTrafficWithinAPercent) {
   double sum = 0.0;
   for (std::uint32_t seed = 1; seed <= 3; ++seed) {
@@ -103,15 +113,7 @@ TEST(Odometry, KeyFramesByRuleOrAtAFixedInterval) {
 
 TEST(Odometry, ResultDoesNotDependOnThreads) {
   const Drive drive = MakeDrive({.seconds = 5.0, .seed = 5});
-  const auto one = Estimate(drive, {}, 1);
-  const auto four = Estimate(drive, {}, 4);
-  ASSERT_EQ(one.trajectory.size(), four.trajectory.size());
-  for (std::size_t i = 0; i < one.trajectory.size(); ++i) {
-    EXPECT_EQ(one.trajectory[i].t, four.trajectory[i].t);
-    EXPECT_EQ(one.trajectory[i].T_world_cam.Matrix(), four.trajectory[i].T_world_cam.Matrix()) << i;
-  }
-  ASSERT_EQ(one.points.size(), four.points.size());
-  for (std::size_t i = 0; i < one.points.size(); ++i) EXPECT_EQ(one.points[i].position, four.points[i].position);
+  ExpectEqual(Estimate(drive, {}, 1), Estimate(drive, {}, 4));
 }
 
 TEST(Odometry, ANewSegmentAfterAGapContinuesTheVelocity) {
@@ -128,6 +130,23 @@ TEST(Odometry, ANewSegmentAfterAGapContinuesTheVelocity) {
   for (std::size_t i = 1; i < result.trajectory.size(); ++i) {
     EXPECT_GT(result.trajectory[i].t, result.trajectory[i - 1].t);
   }
+}
+
+/// Too few tracks to start a map in the first three seconds, enough to be tracked backwards from a later one.
+TEST(Odometry, TracksBackwardsFromTheFirstMap) {
+  Drive drive = MakeDrive({.stop = false, .seed = 2});
+  const TimeNs rich = drive.truth.front().t + FromSeconds(3.0);
+  std::erase_if(drive.tracks, [&](const auto& o) { return o.t < rich && o.id % 3 != 0; });
+  OdometryOptions options;
+  options.frame_handler.bootstrap.min_inliers = 40;
+  const auto result = Estimate(drive, options);
+  const Accuracy accuracy = Evaluate(result.trajectory, drive.truth);
+  ASSERT_EQ(result.bootstraps.size(), 1u);
+  EXPECT_GT(result.bootstraps.front(), drive.truth.front().t + FromSeconds(2.0));
+  EXPECT_GT(accuracy.coverage, 0.97);
+  EXPECT_LT(accuracy.planar_percent, 1.0);
+  EXPECT_LT(accuracy.rotation_degrees, 1.2);
+  ExpectEqual(Estimate(drive, options, 1), result);
 }
 
 TEST(Odometry, RejectsAStandingCamera) {
