@@ -20,6 +20,8 @@ namespace evo::odometry {
 
 namespace {
 
+constexpr int kMinFirstInliers = 20;  // of the first pose, whose error turns the whole path
+
 void LogTracks(bool resampled, const ResamplingOptions& options) {
   if (resampled) {
     spdlog::info("odometry: asynchronous tracks, resampled every {} s", options.frame_interval_s);
@@ -67,7 +69,9 @@ void ExtendBackwards(const FrameHandlerOptions& options, const std::vector<Frame
   std::vector<SegmentPose> earlier;
   for (int frame = 0; frame < first; ++frame) {
     const FrameRecord& record = backward.records()[last - frame];
-    if (record.segment >= 0) earlier.push_back({frame, backward.Pose(last - frame), record.inliers});
+    if (record.segment < 0) continue;
+    if (earlier.empty() && record.inliers < kMinFirstInliers) continue;
+    earlier.push_back({frame, backward.Pose(last - frame), record.inliers});
   }
   poses.insert(poses.begin(), earlier.begin(), earlier.end());
   std::set<std::int64_t> known;

@@ -21,7 +21,7 @@ struct BootstrapOptions {
   double max_disparity_px = 30.0;
   double inlier_px = 1.5;
   double min_inlier_ratio = 0.6;
-  int min_inliers = 15;
+  int min_inliers = 20;
   double min_shared_ratio = 0.5;
   double min_parallax_deg = 1.0;
   double median_depth = 10.0;

@@ -21,7 +21,7 @@ namespace {
 constexpr double kCandidateSpacingPx = 1.0;  // image motion between candidates; a closer one sees the same
 constexpr double kRetryDisparityPx = 1.5;    // image motion between tries of a pair; a smaller one changes nothing
 constexpr double kMinLastDisparityRatio = 0.3;  // of `min_disparity_px`, for the last pair of a candidate
-constexpr double kMinLastPairsRatio = 3.0;      // of `min_inliers`: little motion of few tracks proves nothing
+constexpr std::size_t kMinLastPairs = 45;       // little motion of few tracks proves nothing
 constexpr int kMaxRefinedFrames = 12;        // of the first map; more cost time and add little baseline
 constexpr double kMaxResidualPx = 2.0;       // of a good observation after the refinement
 constexpr double kMinGoodRatio = 0.75;       // of the observations; fewer: the motion is wrong
@@ -123,7 +123,7 @@ std::optional<Bootstrap> Bootstrapper::Add(int index) {
 
 std::optional<Bootstrap> Bootstrapper::TryLastPair(int first, int last) {
   const auto pairs = Match(frames_[first], frames_[last]);
-  if (static_cast<double>(pairs.size()) < kMinLastPairsRatio * options_.min_inliers) return std::nullopt;
+  if (pairs.size() < kMinLastPairs) return std::nullopt;
   if (MedianDisparity(pairs) < kMinLastDisparityRatio * options_.min_disparity_px) return std::nullopt;
   std::string reason = failure_reason_;
   auto bootstrap = TryPair(first, last);
