@@ -134,11 +134,11 @@ TEST(Odometry, ANewSegmentAfterAGapContinuesTheVelocity) {
 
 /// Too few tracks to start a map in the first three seconds, enough to be tracked backwards from a later one.
 TEST(Odometry, TracksBackwardsFromTheFirstMap) {
-  Drive drive = MakeDrive({.stop = false, .seed = 2});
+  Drive drive = MakeDrive({.features = 150, .stop = false, .seed = 2});
   const TimeNs rich = drive.truth.front().t + FromSeconds(3.0);
   std::erase_if(drive.tracks, [&](const auto& o) { return o.t < rich && o.id % 3 != 0; });
   OdometryOptions options;
-  options.frame_handler.bootstrap.min_inliers = 40;
+  options.frame_handler.bootstrap.min_inliers = 60;
   const auto result = Estimate(drive, options);
   const Accuracy accuracy = Evaluate(result.trajectory, drive.truth);
   ASSERT_EQ(result.bootstraps.size(), 1u);

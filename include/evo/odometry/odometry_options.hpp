@@ -79,7 +79,7 @@ struct FrameHandlerOptions {
 /// Errors that all tracks share. The residuals of an adjustment do not show them, since the poses absorb them: they are
 /// properties of tracker and sensor and are measured where the truth is known.
 struct CovarianceOptions {
-  double variance_inflation = 5.0;
+  double variance_inflation = 8.0;
   double rotation_bias_ratio = 0.001;
   int samples = 100;
 };
