@@ -21,7 +21,7 @@ namespace {
 // cars.
 constexpr double kMinInlierRatioBetween = 0.35;
 constexpr double kMinRelativeDecrease = 1e-3;  // of the cost in an iteration; less moves no pose noticeably
-constexpr double kAdjustmentTime = 0.9;  // ratio of the whole refinement, for the progress
+constexpr double kAdjustmentTime = 0.9;        // ratio of the whole refinement, for the progress
 
 /// Removes the observations of tracks with more outliers than inliers: objects that move by themselves, and slips.
 void RemoveOutlierTracks(BundleProblem* problem) {

@@ -18,13 +18,13 @@ namespace evo::odometry {
 
 namespace {
 
-constexpr double kCandidateSpacingPx = 1.0;  // image motion between candidates; a closer one sees the same
-constexpr double kRetryDisparityPx = 1.5;    // image motion between tries of a pair; a smaller one changes nothing
+constexpr double kCandidateSpacingPx = 1.0;     // image motion between candidates; a closer one sees the same
+constexpr double kRetryDisparityPx = 1.5;       // image motion between tries of a pair; a smaller one changes nothing
 constexpr double kMinLastDisparityRatio = 0.3;  // of `min_disparity_px`, for the last pair of a candidate
 constexpr std::size_t kMinLastPairs = 45;       // little motion of few tracks proves nothing
-constexpr int kMaxRefinedFrames = 12;        // of the first map; more cost time and add little baseline
-constexpr double kMaxResidualPx = 2.0;       // of a good observation after the refinement
-constexpr double kMinGoodRatio = 0.75;       // of the observations; fewer: the motion is wrong
+constexpr int kMaxRefinedFrames = 12;           // of the first map; more cost time and add little baseline
+constexpr double kMaxResidualPx = 2.0;          // of a good observation after the refinement
+constexpr double kMinGoodRatio = 0.75;          // of the observations; fewer: the motion is wrong
 
 /// The angle between the rays from two cameras to one point, rad.
 double Parallax(const Feature& first, const Feature& second, const geometry::SE3& T_2_1) {
