@@ -98,7 +98,8 @@ void RefineSegment(const FinalRefinementOptions& options, const std::vector<Fram
   const RefinedPoints points(bundle, options.drift_variance_ratio, *segment);
   PoseCompleter completer =
       CompletePoses(frames, points, options.covariance.variance_inflation, bundle, range, *segment);
-  if (range.begin == 0) completer.Extend(segment->poses.front().frame - 1, begin_frame - 1, -1, poses.front());
+  const int first_frame = segment->poses[bundle.segment_poses[range.begin]].frame;
+  completer.Extend(first_frame - 1, begin_frame - 1, -1, poses[range.begin]);
   if (range.end == poses.size()) completer.Extend(segment->poses.back().frame + 1, end_frame, 1, poses.back());
   segment->poses = completer.Poses();
   segment->points = points.points();
