@@ -46,6 +46,7 @@ ABLATIONS = [
     "odometry.final.drift_variance_ratio=0",
     "odometry.final.track_noise=false",
     "odometry.final_refinement=false",
+    "odometry.backward_tracking=false",
     "odometry.window_refinement=false",
     "odometry.bootstrap.refine=false",
     "odometry.key_frame.every_frames=5",

@@ -169,7 +169,9 @@ OdometryResult RunOdometry(const events::Tracks& tracks, const geometry::Camera&
   result.losses = handler.losses();
 
   std::vector<Segment> segments = CutSegments(handler);
-  ExtendBackwards(options.frame_handler, frames, camera.focal_px(), threads, handler, &segments);
+  if (options.backward_tracking) {
+    ExtendBackwards(options.frame_handler, frames, camera.focal_px(), threads, handler, &segments);
+  }
   if (options.final_refinement.enabled) {
     ThreadPool pool(threads);
     const auto refinement_progress = [&](double ratio) { progress(OdometryStage::kRefinement, ratio); };

@@ -157,6 +157,8 @@ void Register(Parameters& parameters, GroundOptions& options) {
 void Register(Parameters& parameters, OdometryOptions& options) {
   Register(parameters, options.resampling);
   Register(parameters, options.frame_handler);
+  parameters.Add("odometry.backward_tracking", &options.backward_tracking,
+                 "track the frames before the first map backwards from it");
   Register(parameters, options.final_refinement);
   Register(parameters, options.ground);
 }

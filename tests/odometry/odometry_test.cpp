@@ -147,6 +147,8 @@ TEST(Odometry, TracksBackwardsFromTheFirstMap) {
   EXPECT_LT(accuracy.planar_percent, 1.0);
   EXPECT_LT(accuracy.rotation_degrees, 1.2);
   ExpectEqual(Estimate(drive, options, 1), result);
+  options.backward_tracking = false;
+  EXPECT_LT(Evaluate(Estimate(drive, options).trajectory, drive.truth).coverage, 0.8);
 }
 
 TEST(Odometry, RejectsAStandingCamera) {

@@ -111,6 +111,7 @@ struct GroundOptions {
 struct OdometryOptions {
   ResamplingOptions resampling;
   FrameHandlerOptions frame_handler;
+  bool backward_tracking = true;
   FinalRefinementOptions final_refinement;
   GroundOptions ground;
 };
