@@ -49,7 +49,8 @@ def row_of(sequence: Sequence, method: str, results: Path) -> Row:
     row: dict[str, Value] = {
         "seed": sequence.seed, "method": method, "recorded_s": manifest.value("recorded_s"),
         "events": manifest.count("events"), "coverage_since_start_share": coverage,
-        "lost": int(bool(failure) or coverage is None or coverage < LOST_BELOW),
+        "lost": int(bool(failure) or coverage is None or coverage < LOST_BELOW
+                    or summary.number("origin-scale", "mean_planar_percent") is None),  # no scale fits a wrong one
         "rebootstraps": manifest.rebootstraps(), "ground_tracks": manifest.count("ground_tracks"),
         "has_metric_scale": int(metric), "metric_scale": metric_scale if metric else None,
         "metric_scale_error_percent": 100 * abs(metric_scale - 1) if metric and metric_scale is not None else None,

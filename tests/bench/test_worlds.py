@@ -8,7 +8,7 @@ from support import BenchTest
 
 from bench.measures import resting_share
 from bench.worlds import seed_list
-from bench.worlds_table import distribution, percentile
+from bench.worlds_table import distribution, percentile, row_of
 
 WORLDS = ("worlds", "--scene", "swift.yaml", "--duration", "0.3")
 
@@ -58,6 +58,16 @@ class Worlds(BenchTest):
         row = self.table("out/bench_worlds/worlds.csv")[0]
         self.assertEqual((row["lost"], row["mean_planar_percent"]), ("1", ""))
         self.assertIn("tracking is lost", row["failure"])
+
+    def test_a_trajectory_that_no_scale_fits_is_lost(self) -> None:
+        results = self.folder / "results"
+        results.mkdir()
+        (results / "trajectory.txt").write_text("0.00 0 0 0 0 0 0 1\n0.02 0 0 1 0 0 0 1\n")
+        (results / "tracks.txt").write_text("0 0.00 1 1\n0 0.02 2 2\n")
+        drive = argparse.Namespace(seed=1)
+        self.assertEqual(row_of(drive, "em", results)["lost"], 1)
+        (results / "summary.csv").write_text("alignment,mean_planar_percent\norigin-scale,0.1\n")
+        self.assertEqual(row_of(drive, "em", results)["lost"], 0)
 
     def test_of_held_back_seeds_no_drive_is_shown(self) -> None:
         self.assertEqual(self.bench(*WORLDS, "--seeds", "1001,1002", "--methods", "em"), 0, self.err)
