@@ -176,7 +176,7 @@ class Odometry(BenchTest):
                          ["bumps:0.3", "bumps_level:0.3"])
         self.assertRegex(self.out, r"error_over_that_of_level +\| median +\| <= 1.5 +\| - +\| 1 +\| met")
         self.bench("ablation", "--seeds", "1", "bumps.yaml")
-        self.assertEqual(len(self.table("out/bench_odometry/ablation.csv")), 25, "ours and 24 ingredients")
+        self.assertEqual(len(self.table("out/bench_odometry/ablation.csv")), 26, "ours and 25 ingredients")
         self.assertNotIn("Targets", self.out)
 
     def test_given_tracks(self) -> None:
